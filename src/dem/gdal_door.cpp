@@ -1,0 +1,44 @@
+#include "dem/gdal_door.hpp"
+
+#include <mutex>
+
+namespace tarn::dem {
+
+namespace {
+void CPL_STDCALL keep(CPLErr level, CPLErrorNum, const char* message) {
+    auto& kept = *static_cast<GdalMessages::Kept*>(CPLGetErrorHandlerUserData());
+    if (level >= CE_Warning)
+        kept.last = message;
+    kept.failed |= level >= CE_Failure;
+}
+} // namespace
+
+GdalMessages::GdalMessages() { CPLPushErrorHandlerEx(keep, &kept_); }
+GdalMessages::~GdalMessages() { CPLPopErrorHandler(); }
+std::string GdalMessages::last() const { return kept_.last.empty() ? "no further message" : kept_.last; }
+
+Arguments::Arguments(std::initializer_list<std::string> words) {
+    for (const auto& word : words)
+        add(word);
+}
+
+int CPL_STDCALL GdalProgress::callback(double fraction, const char*, void* self) {
+    auto& me = *static_cast<GdalProgress*>(self);
+    try { // an exception must not travel through GDAL's frames
+        me.progress_.report(me.from_ + fraction * (me.to_ - me.from_), me.what_);
+    } catch (const Cancelled&) {
+        me.cancelled_ = true;
+        return FALSE;
+    }
+    return TRUE;
+}
+
+void register_drivers() {
+    static std::once_flag once;
+    std::call_once(once, [] {
+        GDALAllRegister();
+        CPLSetConfigOption("GDAL_PAM_ENABLED", "NO"); // leave no .aux.xml beside users' files
+    });
+}
+
+} // namespace tarn::dem

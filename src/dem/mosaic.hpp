@@ -1,0 +1,59 @@
+#pragma once
+/// @file mosaic.hpp  Several rasters on their own grids -> one grid of metres in the scene's frame.
+///
+/// A grid that already is metric and square in a transverse Mercator projection is kept, cell for
+/// node, nothing resampled. Everything else is warped by GDAL to a local transverse Mercator.
+/// Flat surfaces (water) are carried over by nearest neighbour, so that a lake keeps its level
+/// and its area; land is interpolated bilinearly, which cannot overshoot into the water.
+#include "core/grid.hpp"
+#include "core/progress.hpp"
+#include "dem/source.hpp"
+#include "geo/frame_data.hpp"
+
+#include <optional>
+
+namespace tarn::dem {
+
+/// Elevations in the frame; NaN where there is no data.
+struct Mosaic {
+    geo::Frame frame;
+    Grid<float> elevation_m;
+    double spacing_m = 0.0;
+    double west_m = 0.0, north_m = 0.0; ///< scene position of node (0, 0)
+    std::string resampling = "none";
+    std::vector<std::string> notes;
+};
+
+/// Region of interest on WGS 84 [deg].
+struct Bounds {
+    double west_deg = 0.0, south_deg = 0.0, east_deg = 0.0, north_deg = 0.0;
+};
+
+struct MosaicOptions {
+    std::optional<Bounds> bounds;
+    std::optional<double> spacing_m; ///< > 0; asks for resampling
+    int max_side = 16384;            ///< nodes; more is refused with a hint
+};
+
+/// @throws tarn::Error  if the rasters cannot be brought together, the region is outside them,
+///                      or the grid would be too large
+/// @throws tarn::Cancelled
+Mosaic build_mosaic(std::vector<Source>& sources, const MosaicOptions& options,
+                    const Progress& progress);
+
+/// Brings one more raster onto an existing mosaic's grid (bilinear, NaN outside).
+Grid<float> onto_grid(Source& source, const Mosaic& mosaic, const std::string& resampling);
+
+/// The frame of a transverse Mercator CRS in metres; nothing if `crs` is something else.
+/// The origin stays (0, 0); datum_shift is fitted later, over the scene.
+std::optional<geo::Frame> transverse_mercator(const OGRSpatialReference& crs);
+
+/// Asks PROJ how the frame's datum differs from WGS 84 over a square of half side `reach_m`
+/// around scene (0, 0), and stores it. Returns the greatest residual [m] of the fit.
+double fit_datum_shift(geo::Frame& frame, const OGRSpatialReference& crs, double reach_m);
+
+/// GDAL's affine of a grid whose pixel CENTRES are the mosaic's nodes.
+GeoTransform geo_transform(const geo::Frame& frame, double west_m, double north_m,
+                           double spacing_m);
+
+} // namespace tarn::dem

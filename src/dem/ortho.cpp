@@ -1,0 +1,105 @@
+#include "dem/ortho.hpp"
+
+#include "core/error.hpp"
+#include "core/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gdal_alg.h>
+#include <gdal_utils.h>
+
+namespace tarn::dem {
+
+namespace {
+
+Dataset translate(GDALDataset& from, Arguments& arguments, const std::string& name) {
+    GdalMessages messages;
+    GDALTranslateOptions* options = GDALTranslateOptionsNew(arguments.get(), nullptr);
+    Dataset out(GDALDataset::FromHandle(
+        GDALTranslate("", GDALDataset::ToHandle(&from), options, nullptr)));
+    GDALTranslateOptionsFree(options);
+    if (!out)
+        throw Error(name + ": cannot be read as a picture (" + messages.last() + ")");
+    return out;
+}
+
+} // namespace
+
+Ortho warp_ortho(Source& source, const geo::Frame& frame, const Heightfield& ground,
+                 const Progress& progress) {
+    GdalMessages messages;
+    Dataset view;
+    GDALDataset* input = source.original.get();
+    GDALRasterBand& first = *input->GetRasterBand(1);
+    if (first.GetColorInterpretation() == GCI_PaletteIndex) {
+        Arguments expand{"-of", "MEM", "-expand", "rgba"};
+        view = translate(*input, expand, source.name);
+        input = view.get();
+    } else if (first.GetRasterDataType() != GDT_Byte) {
+        Arguments scale{"-of", "MEM", "-ot", "Byte", "-scale"};
+        view = translate(*input, scale, source.name);
+        input = view.get();
+    }
+    const double half = 0.5 * ground.spacing_m;
+    const double oe = frame.origin_easting_m, on = frame.origin_northing_m;
+    double west = oe + ground.west_m - half, east = oe + ground.east_m() + half;
+    double south = on + ground.south_m() - half, north = on + ground.north_m + half;
+
+    // The picture's own resolution in the frame, from GDAL's suggestion.
+    double native = ground.spacing_m;
+    {
+        CPLStringList options;
+        options.SetNameValue("DST_SRS", frame.wkt.c_str());
+        void* transformer =
+            GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(input), nullptr, options.List());
+        double suggested[6];
+        int cols = 0, rows = 0;
+        double extent[4];
+        if (!transformer || GDALSuggestedWarpOutput2(GDALDataset::ToHandle(input),
+                                                     GDALGenImgProjTransform, transformer, suggested,
+                                                     &cols, &rows, extent, 0) != CE_None)
+            throw Error(source.name + ": cannot be placed in the scene (" + messages.last() + ")",
+                        "check its CRS");
+        GDALDestroyGenImgProjTransformer(transformer);
+        native = suggested[1];
+        west = std::max(west, extent[0]);
+        south = std::max(south, extent[1]);
+        east = std::min(east, extent[2]);
+        north = std::min(north, extent[3]);
+    }
+    if (!(west < east && south < north))
+        throw Error(source.name + ": lies outside the scene", "give a picture of this place");
+    const double spacing = std::max(native, std::max(east - west, north - south) / 8192.0);
+    const int cols = std::max(1, int(std::ceil((east - west) / spacing)));
+    const int rows = std::max(1, int(std::ceil((north - south) / spacing)));
+    Arguments arguments{"-of", "MEM", "-t_srs", frame.wkt, "-te", text(west), text(north - rows * spacing),
+                        text(west + cols * spacing), text(north), "-ts", text(cols), text(rows),
+                        "-r", spacing > 1.5 * native ? "average" : "bilinear", "-dstalpha", "-multi",
+                        "-wo", "NUM_THREADS=ALL_CPUS"};
+    GDALWarpAppOptions* options = GDALWarpAppOptionsNew(arguments.get(), nullptr);
+    GdalProgress watcher(progress, "draping the picture", 0.85, 0.95);
+    GDALWarpAppOptionsSetProgress(options, &GdalProgress::callback, &watcher);
+    GDALDatasetH handle = GDALDataset::ToHandle(input);
+    Dataset out(GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &handle, options, nullptr)));
+    GDALWarpAppOptionsFree(options);
+    watcher.check();
+    if (!out)
+        throw Error(source.name + ": cannot be warped (" + messages.last() + ")");
+
+    Ortho ortho{.picture = {.width_px = cols, .height_px = rows, .channels = 4, .bytes = {}},
+                .west_m = west - oe,
+                .north_m = north - on,
+                .spacing_m = spacing};
+    auto& bytes = ortho.picture.bytes;
+    bytes.resize(std::size_t(cols) * std::size_t(rows) * 4);
+    const int bands = out->GetRasterCount(); // the last one is alpha
+    for (int channel = 0; channel < 4; ++channel) {
+        const int band = channel == 3 ? bands : bands >= 4 ? channel + 1 : 1;
+        if (out->GetRasterBand(band)->RasterIO(GF_Read, 0, 0, cols, rows, bytes.data() + channel,
+                                               cols, rows, GDT_Byte, 4, GSpacing(cols) * 4) != CE_None)
+            throw Error(source.name + ": cannot be read (" + messages.last() + ")");
+    }
+    return ortho;
+}
+
+} // namespace tarn::dem

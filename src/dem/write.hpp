@@ -1,0 +1,30 @@
+#pragma once
+/// @file write.hpp  Heightfields and orthophotos as GeoTIFFs that QGIS shows in metres.
+#include "core/heightfield.hpp"
+#include "core/image.hpp"
+#include "geo/frame_data.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace tarn::dem {
+
+/// UInt16 GeoTIFF with GDAL scale and offset; pixel centres are the nodes.
+/// @param nodata_zero  declare code 0 as nodata (for water)
+/// @throws tarn::Error  if it cannot be written
+void write_heightfield(const std::filesystem::path& path, const Heightfield& field,
+                       const geo::Frame& frame, const std::string& description, bool nodata_zero);
+
+void write_ortho(const std::filesystem::path& path, const Ortho& ortho, const geo::Frame& frame);
+
+/// A plain Float32 GeoTIFF of elevations in any CRS; for samples and tests.
+/// @param crs        EPSG:..., PROJ or WKT
+/// @param transform  GDAL's six numbers, pixel edges
+void write_elevations(const std::filesystem::path& path, const Grid<float>& elevation_m,
+                      const std::string& crs, const double transform[6],
+                      const std::string& description);
+
+/// GDAL's and PROJ's release, for `tarn doctor`.
+std::string library_versions();
+
+} // namespace tarn::dem

@@ -1,0 +1,1 @@
+namespace tarn { int room_scene; }
