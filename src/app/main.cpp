@@ -1,10 +1,73 @@
-#include "dem/import.hpp"
+// tarn: the command line. Subcommands are in cmd_<name>.cpp; nothing else prints or exits.
+#include "app/command.hpp"
+#include "app/console.hpp"
+#include "core/error.hpp"
+
+#include <CLI/CLI.hpp>
 #include <iostream>
+#include <new>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+namespace tarn::app {
+
+namespace {
+std::string typed;
+}
+
+const std::string& command_line() { return typed; }
+
+void remember_command_line(int argc, char** argv) {
+    typed = "tarn";
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        const bool plain = !word.empty() && word.find_first_of(" '\"\\$`*?;&|<>(){}[]") == std::string::npos;
+        typed += plain ? " " + word : " '" + word + "'";
+    }
+}
+
+} // namespace tarn::app
+
 int main(int argc, char** argv) {
     using namespace tarn;
-    dem::ImportOptions o; o.dems={argv[1]}; int i=2; if (argc>2 && std::string(argv[2])!="auto") o.level_m=std::stod(argv[2]);
-    for (i=3;i<argc;++i) { std::string a=argv[i]; if (a.find(',')!=std::string::npos) {o.at=GeoPoint{std::stod(a), std::stod(a.substr(a.find(',')+1))};} else o.dems.push_back(a);}
-    try { auto r=dem::import_dem(o, Progress{});
-    auto&l=r.lakes[0]; std::cout<<r.ground.size().cols<<"x"<<r.ground.size().rows<<" s="<<r.ground.spacing_m<<" level "<<l.level_m<<" area "<<l.area_m2<<" true "<<l.true_area_m2<<" vol "<<l.volume_m3.value_or(-1)<<" max "<<l.max_depth_m.value_or(-1)<<" shore "<<l.shoreline_m<<" isl "<<l.islands<<" open "<<l.open_at_edge<<" "<<to_string(l.bed)<<" "<<l.position.lat_deg<<","<<l.position.lon_deg<<"\n";
-    for (auto&n:r.report.notes) std::cout<<" - "<<n<<"\n"; std::cout<<r.report.resampling<<"\n";
-    } catch (std::exception&e){std::cerr<<e.what()<<"\n";return 1;} }
+    spdlog::set_default_logger(spdlog::stderr_color_st("tarn"));
+    spdlog::set_pattern("tarn: %^%l%$: %v");
+    app::remember_command_line(argc, argv);
+    app::catch_interrupts();
+
+    CLI::App cli("tarn shows real lakes as they look, from elevation data and a water level.", "tarn");
+    cli.set_version_flag("--version", TARN_VERSION);
+    cli.require_subcommand(0, 1);
+    cli.footer("Start with:  tarn import DEM.tif --level auto -o lake\n"
+               "             tarn render lake -o lake.png");
+    app::Run run;
+    app::add_import(cli, run);
+    app::add_info(cli, run);
+    app::add_render(cli, run);
+    app::add_doctor(cli, run);
+    try {
+        cli.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return cli.exit(error, std::cout, std::cerr) == 0 ? 0 : 2;
+    }
+    if (!run) {
+        std::cout << cli.help();
+        return 0;
+    }
+    try {
+        return run();
+    } catch (const Cancelled& stop) {
+        app::end_progress();
+        spdlog::warn(stop.what());
+    } catch (const Error& error) {
+        app::end_progress();
+        spdlog::error(error.what());
+    } catch (const std::bad_alloc&) {
+        app::end_progress();
+        spdlog::error("out of memory; cut the scene with --at and --radius, or choose a coarser --spacing");
+    } catch (const std::exception& error) {
+        app::end_progress();
+        spdlog::error("unexpected: {}", error.what());
+    }
+    return 1;
+}

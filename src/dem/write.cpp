@@ -1,11 +1,12 @@
 #include "dem/write.hpp"
 
 #include "core/error.hpp"
+#include "core/text.hpp"
 #include "dem/gdal_door.hpp"
 #include "dem/mosaic.hpp"
 
 #include <ogr_spatialref.h>
-#include <proj.h>
+#include <ogr_srs_api.h>
 
 namespace tarn::dem {
 
@@ -102,7 +103,9 @@ void write_elevations(const std::filesystem::path& path, const Grid<float>& z,
 }
 
 std::string library_versions() {
-    return std::string("GDAL ") + GDALVersionInfo("RELEASE_NAME") + ", PROJ " + proj_info().version;
+    int major = 0, minor = 0, patch = 0;
+    OSRGetPROJVersion(&major, &minor, &patch);
+    return text("GDAL ", GDALVersionInfo("RELEASE_NAME"), ", PROJ ", major, ".", minor, ".", patch);
 }
 
 } // namespace tarn::dem

@@ -1,0 +1,221 @@
+#version 450 core
+// passes/trace.comp — the picture: one ray a pixel, split once at the water's surface into a
+// reflected and a refracted one, shaded where it ends.
+// Reads heights, maxima, sky and orthophoto; adds to radiance, writes distance (first sample).
+// One invocation per pixel. This file says which rays are followed; what light does is in lib/.
+#include "shared/view_block.h"
+#include "lib/camera.glsl"
+#include "lib/fresnel.glsl"
+#include "lib/ground_colour.glsl"
+#include "lib/heightfield.glsl"
+#include "lib/medium.glsl"
+#include "lib/sky.glsl"
+#include "lib/surface.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
+layout(binding = TARN_TEXTURE_MAXIMA) uniform sampler2D maxima;
+layout(binding = TARN_TEXTURE_SKY) uniform sampler2D sky_table;
+layout(binding = TARN_TEXTURE_ORTHO) uniform sampler2D ortho;
+layout(binding = TARN_IMAGE_RADIANCE, rgba32f) uniform image2D radiance_image;
+layout(binding = TARN_IMAGE_DISTANCE, r32f) uniform writeonly image2D distance_image;
+layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
+layout(binding = TARN_BUFFER_LAKES, std430) readonly buffer Lakes { vec4 lakes[]; };
+
+const float far_m = 1e9;
+const float inverse_pi = 0.318309886184;
+// Mean slant of skylight in the water, refracted from an even sky, and what the surface lets in
+// of it (1 - .066): docs/physics/water.md.
+const float sky_slant = 1.19;
+const float sky_entering = 0.934;
+
+bool on(uint flag) { return (view.counts.z & flag) != 0u; }
+
+Ray ray_from(vec3 origin, vec3 direction) {
+    return Ray(origin, vec3(direction.x / view.grid.z, -direction.y / view.grid.z, direction.z));
+}
+
+// A ray still to be followed, and how much its radiance counts in the pixel.
+struct Segment {
+    Ray ray;
+    vec3 direction; // unit, scene axes
+    vec3 weight;
+    bool in_water;
+    float level;    // of that water
+    bool bed_known;
+    float before_m; // path already travelled, for the footprint of a pixel
+};
+
+float surface_reflectance(float cos_i, float eta) {
+    return on(TARN_FLAG_SCHLICK) ? fresnel_schlick(cos_i, eta) : fresnel_dielectric(cos_i, eta);
+}
+
+vec3 sky(vec3 direction) {
+    vec3 radiance = sky_radiance(sky_table, direction, view.sun.xyz);
+    if (on(TARN_FLAG_SUN_DISC)) {
+        float radius = view.sun.w;
+        radiance += view.sun_irradiance.rgb / (3.14159265359 * radius * radius) *
+                    disc_share(direction, view.sun.xyz, radius, view.camera.w);
+    }
+    return radiance;
+}
+
+bool lit_along(Field field, vec3 from, vec3 towards, float t_max) {
+    Hit ignored;
+    return !trace_field(heights, maxima, field, ray_from(from, towards), t_max, false, ignored);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 size = ivec2(view.counts.xy);
+    if (any(greaterThanEqual(pixel, size)))
+        return;
+    Field field = Field(ivec2(view.grid.xy) - 1, view.grid.xy, vec2(0.0, view.heights.y),
+                        view.heights.zw, view.grid.w, int(view.walk.x), int(view.walk.y));
+    float index = view.attenuation.w, d_max = view.backscattering.w;
+    vec3 attenuation = view.attenuation.rgb;
+
+    // Sunlight just below a flat surface: one value for the whole lake.
+    vec3 sun = view.sun.xyz;
+    vec3 sun_below = sun.z > 0.0 ? -refracted(-sun, 1.0 / index) : vec3(0.0, 0.0, 1.0);
+    vec3 sun_irradiance_below = vec3(0.0);
+    if (sun.z > 0.0)
+        sun_irradiance_below = view.sun_irradiance.rgb * (sun.z / sun_below.z) *
+                               (1.0 - surface_reflectance(sun.z, 1.0 / index));
+    vec3 sky_irradiance_below = view.sky_irradiance.rgb * sky_entering;
+
+    vec3 direction = pixel_direction(view.forward.xyz, view.right.xyz, view.up.xyz,
+                                     vec2(view.right.w, view.up.w),
+                                     (vec2(pixel) + view.offset.xy) / vec2(size));
+    Segment todo[2];
+    int pending = 1;
+    bool under_water = on(TARN_FLAG_UNDER_WATER);
+    todo[0] = Segment(ray_from(view.camera.xyz, direction), direction, vec3(1.0), under_water,
+                      view.options.y, view.options.z > 0.5, 0.0);
+    vec3 radiance = vec3(0.0);
+    float first_distance = far_m;
+
+    for (int turn = 0; turn < 3 && pending > 0; ++turn) {
+        Segment now = todo[--pending];
+        float start_depth = now.in_water ? max(now.level - now.ray.origin.z, 0.0) : 0.0;
+        float to_surface = now.in_water && now.direction.z > 1e-6 ? start_depth / now.direction.z : far_m;
+        float reach = now.in_water ? min(to_surface, d_max) : far_m;
+        bool water_counts = turn == 0 && !now.in_water;
+
+        Hit hit;
+        bool found = false;
+        if (!now.in_water || now.bed_known)
+            found = trace_field(heights, maxima, field, now.ray, reach, water_counts, hit);
+        float travelled = found ? hit.t : reach;
+        bool at_surface = found ? hit.water : now.in_water && to_surface <= d_max;
+        if (turn == 0)
+            first_distance = found || at_surface ? travelled : far_m;
+        vec3 place = now.ray.origin + travelled * now.ray.direction;
+
+        vec3 weight = now.weight;
+        if (now.in_water) {
+            float sink = -now.direction.z;
+            radiance += weight * (path_radiance(view.backscattering.rgb, attenuation,
+                                                sun_irradiance_below, 1.0 / sun_below.z, start_depth,
+                                                sink, travelled) +
+                                  path_radiance(view.backscattering.rgb, attenuation,
+                                                sky_irradiance_below * sky_slant, sky_slant,
+                                                start_depth, sink, travelled));
+            weight *= transmittance(attenuation, travelled);
+        }
+
+        if (at_surface) { // split in two; this happens in the first turn only
+            if (turn > 0)
+                continue;
+            float level = now.in_water ? now.level : place.z;
+            bool bed_known = now.bed_known;
+            if (!now.in_water) {
+                float nearest = far_m;
+                for (uint k = 0u; k < view.counts.w; ++k)
+                    if (abs(lakes[k].x - level) < nearest) {
+                        nearest = abs(lakes[k].x - level);
+                        bed_known = lakes[k].y > 0.5;
+                    }
+            }
+            float eta = now.in_water ? index : 1.0 / index;
+            float mirror = surface_reflectance(min(abs(now.direction.z), 1.0), eta);
+            // What is conserved is radiance over index squared.
+            float through = (1.0 - mirror) * eta * eta;
+            vec3 start = vec3(place.xy, level);
+            vec3 bounced = vec3(now.direction.xy, -now.direction.z);
+            if (on(TARN_FLAG_REFLECTION))
+                todo[pending++] = Segment(ray_from(start, bounced), bounced, weight * mirror,
+                                          now.in_water, level, bed_known, travelled);
+            if (on(TARN_FLAG_REFRACTION) && mirror < 1.0) {
+                vec3 bent = refracted(now.direction, eta);
+                todo[pending++] = Segment(ray_from(start, bent), bent, weight * through,
+                                          !now.in_water, level, bed_known, travelled);
+            }
+            continue;
+        }
+        if (!found) {
+            if (!now.in_water)
+                radiance += weight * sky(now.direction);
+            continue;
+        }
+
+        // Ground: land in the air, bed under water.
+        vec2 gradient = ground_gradient(heights, field.nodes, hit.cell, hit.inside, field.ground_m.y);
+        vec3 normal = normal_of(gradient, view.grid.z);
+        float footprint = view.camera.w * (now.before_m + travelled);
+        float level = now.in_water ? now.level : view.look.z;
+        float height = now.in_water ? min(place.z - level, -1e-3) : max(place.z - level, 0.0);
+        vec3 albedo;
+        if (view.look.w >= 0.0) {
+            albedo = vec3(view.look.w);
+        } else {
+            albedo = ground_albedo(place.xy * view.grid.z, height, view.look.x - level,
+                                   view.look.y - level, length(gradient) / view.grid.z, footprint);
+            if (on(TARN_FLAG_ORTHO) && !now.in_water) {
+                vec2 at = (place.xy - view.ortho.xy) / view.ortho.zw;
+                if (all(greaterThan(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)))) {
+                    float lod = max(0.0, log2(max(footprint, 1e-6) / view.ortho_lod.x));
+                    vec4 photo = textureLod(ortho, at, lod);
+                    albedo = mix(albedo, photo.rgb, photo.a);
+                }
+            }
+        }
+
+        vec3 towards = now.in_water ? sun_below : sun;
+        float facing = sun.z > 0.0 ? max(dot(normal, towards), 0.0) : 0.0;
+        float depth = now.in_water ? max(level - place.z, 0.0) : 0.0;
+        vec3 sunlight = vec3(0.0);
+        if (facing > 0.0) {
+            bool lit = true;
+            if (on(TARN_FLAG_SHADOWS)) {
+                vec3 from = place + vec3(0.0, 0.0, view.options.x);
+                // Under water the sun's ray is followed to the surface, then on through the air.
+                int legs = now.in_water ? 2 : 1;
+                for (int leg = 0; leg < legs && lit; ++leg) {
+                    bool wet_leg = now.in_water && leg == 0;
+                    float rise = max(level - from.z, 0.0);
+                    float t_leg = wet_leg ? rise / towards.z : far_m;
+                    lit = lit_along(field, from, wet_leg ? towards : sun, t_leg);
+                    if (wet_leg)
+                        from = vec3(from.xy + vec2(towards.x, -towards.y) / view.grid.z * t_leg,
+                                    max(level, from.z));
+                }
+            }
+            if (lit)
+                sunlight = facing * (now.in_water ? sun_irradiance_below *
+                                                        transmittance(attenuation, depth / towards.z)
+                                                  : view.sun_irradiance.rgb);
+        }
+        vec3 skylight = now.in_water
+                            ? sky_irradiance_below * transmittance(attenuation, sky_slant * depth)
+                            : view.sky_irradiance.rgb;
+        radiance += weight * albedo * inverse_pi * (sunlight + skylight * (0.5 + 0.5 * normal.z));
+    }
+
+    radiance *= view.options.w;
+    if (view.offset.z > 0.5)
+        radiance += imageLoad(radiance_image, pixel).rgb;
+    else
+        imageStore(distance_image, pixel, vec4(first_distance));
+    imageStore(radiance_image, pixel, vec4(radiance, 1.0));
+}

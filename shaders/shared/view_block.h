@@ -1,0 +1,62 @@
+// shared/view_block.h — everything the passes are told about scene, camera and light; compiled by
+// C++ AND by GLSL.
+// Rules: only vec4 / uvec4 members (std140 and C++ then agree); one unit per component; no functions
+// and no constants of nature here, those arrive as values from src/scene.
+// Frame: "grid metres". x = columns, y = rows (southwards), both in nodes; z = height above
+// `heights.x` metres of the scene's datum. Directions without a note are scene axes (x east, y
+// north, z up, unit length).
+#ifdef __cplusplus
+#pragma once
+#include <cstddef>
+#include <glm/vec4.hpp>
+namespace tarn::shared {
+using vec4 = glm::vec4;
+using uvec4 = glm::uvec4;
+#endif
+
+#define TARN_BLOCK_VIEW 0     // uniform block ViewBlock
+#define TARN_BUFFER_LAKES 0   // storage buffer of vec4: x level [m, block heights], y 1 = bed known
+#define TARN_TEXTURE_HEIGHTS 0 // RG16: ground and water codes, one texel a node
+#define TARN_TEXTURE_MAXIMA 1  // RG32F: block maxima of ground, and of ground and water
+#define TARN_TEXTURE_SKY 2     // RGBA32F: sky radiance
+#define TARN_TEXTURE_ORTHO 3   // SRGB8_ALPHA8: orthophoto
+#define TARN_IMAGE_RADIANCE 0  // rgba32f
+#define TARN_IMAGE_DISTANCE 1  // r32f
+#define TARN_IMAGE_MAXIMA 2    // rg32f, written level of the maxima
+
+#define TARN_FLAG_SHADOWS 1u
+#define TARN_FLAG_REFLECTION 2u
+#define TARN_FLAG_REFRACTION 4u
+#define TARN_FLAG_SCHLICK 8u
+#define TARN_FLAG_SUN_DISC 16u
+#define TARN_FLAG_ORTHO 32u
+#define TARN_FLAG_UNDER_WATER 64u
+
+struct ViewBlock {
+    vec4 camera;          // xyz: position (grid), w: angle of a pixel [rad]
+    vec4 forward;         // xyz: unit, w: -
+    vec4 right;           // xyz: unit, w: tangent of half the horizontal field of view
+    vec4 up;              // xyz: unit, w: tangent of half the vertical field of view
+    vec4 grid;            // x: columns, y: rows of nodes, z: spacing [m], w: greatest height [m]
+    vec4 heights;         // x: scene height of z = 0 [m], y: ground [m per unit texel],
+                          // z: water offset [m], w: water [m per unit texel]
+    vec4 sun;             // xyz: towards the sun, w: angular radius of its disc [rad]
+    vec4 sun_irradiance;  // rgb: on a plane facing the sun, w: -
+    vec4 sky_irradiance;  // rgb: on a horizontal plane, w: -
+    vec4 attenuation;     // rgb: a + b_b [1/m], w: index of refraction
+    vec4 backscattering;  // rgb: b_b [1/m], w: greatest path in water [m]
+    vec4 look;            // x: tree line [m], y: snow line [m], z: lake level [m] (all above z = 0),
+                          // w: uniform ground albedo, < 0 = the colour scheme
+    vec4 ortho;           // xy: grid position of its north-west corner, zw: nodes per picture side
+    vec4 ortho_lod;       // x: metres per pixel, yzw: -
+    vec4 options;         // x: lift of shadow rays [m], y: level of the water the camera is in [m],
+                          // z: 1 if that lake's bed is known, w: weight of this sample
+    vec4 offset;          // xy: position inside the pixel, z: index of the sample, w: -
+    uvec4 counts;         // x: width, y: height [px], z: flags, w: lakes
+    uvec4 walk;           // x: level of the root block, y: limit of steps, zw: -
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(ViewBlock) == 288 && offsetof(ViewBlock, walk) == 272, "std140 layout");
+} // namespace tarn::shared
+#endif

@@ -1,0 +1,34 @@
+#pragma once
+/// @file console.hpp  The terminal: progress bar, Ctrl-C, and words that people type.
+#include "core/geo.hpp"
+#include "core/progress.hpp"
+
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+namespace tarn::app {
+
+/// From here on Ctrl-C and SIGTERM ask running work to stop; a second one ends the program.
+void catch_interrupts();
+
+/// A bar on stderr if that is a terminal, silence in a pipe; stops work after Ctrl-C.
+Progress console_progress();
+
+/// Clears the bar, so that a message starts on a line of its own.
+void end_progress();
+
+/// "1,2.5,-3" as numbers.
+/// @throws tarn::Error  naming `option`, unless there are exactly `count`
+std::vector<double> parse_numbers(const std::string& option, const std::string& words, std::size_t count);
+
+/// One number for all three, or three.
+glm::dvec3 parse_triple(const std::string& option, const std::string& words);
+
+GeoPoint parse_place(const std::string& option, const std::string& words);
+
+/// 11140092.1 -> "11.140 km2"; 552830.5 -> "552 830 m2".
+std::string format_area(double m2);
+std::string format_volume(double m3);
+
+} // namespace tarn::app

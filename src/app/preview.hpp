@@ -1,0 +1,11 @@
+#pragma once
+/// @file preview.hpp  A shaded map of a scene with its lakes, level and a scale bar.
+#include "core/image.hpp"
+#include "scene/scene.hpp"
+
+namespace tarn::app {
+
+/// North up, at most `side_px` on the longer side.
+Picture draw_preview(const scene::Scene& scene, int side_px = 900);
+
+} // namespace tarn::app

@@ -1,0 +1,85 @@
+#include "app/report.hpp"
+
+#include "app/console.hpp"
+#include "core/text.hpp"
+#include "geo/frame.hpp"
+
+#include <ctime>
+
+namespace tarn::app {
+
+namespace {
+
+std::string lake_lines(const LakeRecord& lake) {
+    std::string out = text("lake ", lake.id, lake.name.empty() ? "" : " " + lake.name, " at ",
+                           fixed(lake.position.lat_deg, 4), ",", fixed(lake.position.lon_deg, 4),
+                           ", level ", fixed(lake.level_m, 2), " m\n");
+    out += text("  area        ", format_area(lake.area_m2), " in the grid's projection, ",
+                format_area(lake.true_area_m2), " on the ellipsoid\n");
+    if (lake.bed == Bed::unknown)
+        out += "  bed         unknown: no volume, no depth\n";
+    else
+        out += text("  volume      ", format_volume(*lake.volume_m3), "\n  depth       ",
+                    fixed(*lake.max_depth_m, 2), " m greatest, ", fixed(*lake.mean_depth_m, 2),
+                    " m mean (bed ", to_string(lake.bed), ")\n");
+    out += text("  shoreline   ", fixed(lake.shoreline_m / 1000.0, 2), " km, ", lake.islands,
+                lake.islands == 1 ? " island" : " islands",
+                lake.open_at_edge ? "; open at the edge of the data" : "", "\n");
+    return out;
+}
+
+} // namespace
+
+std::string summary(const scene::Scene& scene) {
+    std::string out;
+    for (const LakeRecord& lake : scene.lakes)
+        out += lake_lines(lake);
+    for (const std::string& note : scene.report.notes)
+        out += "  note: " + note + "\n";
+    return out;
+}
+
+std::string full_report(const scene::Scene& scene) {
+    const Heightfield& g = scene.ground;
+    const GeoPoint origin = geo::to_geo(scene.frame, {0.0, 0.0});
+    std::string out;
+    for (const LakeRecord& lake : scene.lakes)
+        out += lake_lines(lake);
+    out += text("grid        ", g.size().cols, " x ", g.size().rows, " nodes, ", g.spacing_m,
+                " m apart: ", fixed((g.size().cols - 1) * g.spacing_m / 1000, 2), " x ",
+                fixed((g.size().rows - 1) * g.spacing_m / 1000, 2), " km\n");
+    out += text("heights     ", fixed(g.min_elevation_m(), 2), " to ", fixed(g.max_elevation_m(), 2),
+                " m, in steps of ", fixed(1000.0 * g.scale_m, 2), " mm\n");
+    out += text("frame       scene (0, 0) at ", fixed(origin.lat_deg, 6), ",", fixed(origin.lon_deg, 6),
+                "; ", scene.frame.proj, "\n");
+    out += text("heights in  vertical datum: ", scene.frame.vertical_datum, "\n");
+    out += text("water       ", scene.optics.name, ", index ", scene.optics.index, "\n");
+    if (scene.ortho)
+        out += text("picture     orthophoto ", scene.ortho->picture.width_px, " x ",
+                    scene.ortho->picture.height_px, ", ", fixed(scene.ortho->spacing_m, 2), " m a pixel\n");
+    const ImportReport& r = scene.report;
+    out += text("import      ", r.created, " by tarn ", r.tarn_version, "\n  ", r.command, "\n");
+    for (const ImportInput& in : r.inputs)
+        out += text("  ", in.role, " ", in.name, " (", in.format, ", ", in.size, ", crc32 ", in.checksum,
+                    ")\n    CRS ", in.crs, "; vertical datum ", in.vertical, "\n");
+    out += text("  resampling  ", r.resampling, "\n");
+    out += text("  voids       ", r.void_nodes, " of ", r.nodes, " nodes; ", r.filled_nodes,
+                " inside the data interpolated, ", r.outside_nodes,
+                " open to the edge filled for the eye and never flooded\n");
+    out += text("  flat        ", fixed(100.0 * r.flat_share, 1),
+                " % of all nodes lie in flat surfaces (water without a bed)\n");
+    for (const std::string& note : r.notes)
+        out += "  note: " + note + "\n";
+    return out;
+}
+
+std::string utc_now() {
+    const std::time_t now = std::time(nullptr);
+    std::tm parts{};
+    gmtime_r(&now, &parts);
+    char out[32];
+    std::strftime(out, sizeof out, "%Y-%m-%dT%H:%M:%SZ", &parts);
+    return out;
+}
+
+} // namespace tarn::app

@@ -1,0 +1,215 @@
+#include "app/view_options.hpp"
+
+#include "app/console.hpp"
+#include "core/error.hpp"
+#include "core/text.hpp"
+#include "geo/frame.hpp"
+#include "geo/sun.hpp"
+#include "scene/presets.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <map>
+
+namespace tarn::app {
+
+namespace {
+
+constexpr double degree = 3.14159265358979323846 / 180.0;
+
+glm::dvec3 towards(double azimuth_deg, double elevation_deg) {
+    const double a = azimuth_deg * degree, e = elevation_deg * degree;
+    return {std::sin(a) * std::cos(e), std::cos(a) * std::cos(e), std::sin(e)};
+}
+
+/// True minus grid azimuth at a place of the scene.
+double convergence_at(const scene::Scene& scene, double x, double y) {
+    return geo::convergence_deg(scene.frame, {x, y});
+}
+
+/// "key=value,key=value" with every key known.
+std::map<std::string, double> parse_pairs(const std::string& words) {
+    static const char* known[] = {"lat", "lon", "x", "y", "z", "above_ground", "above_water", "heading",
+                                  "pitch", "fov", "dx", "dy", "dz", "ux", "uy", "uz"};
+    std::map<std::string, double> out;
+    std::size_t from = 0;
+    while (from <= words.size()) {
+        const std::size_t comma = std::min(words.find(',', from), words.size());
+        const std::string pair = words.substr(from, comma - from);
+        const std::size_t equals = pair.find('=');
+        const std::string key = pair.substr(0, equals);
+        if (equals == std::string::npos || std::find(std::begin(known), std::end(known), key) == std::end(known))
+            throw Error("--camera: '" + pair + "' is not understood",
+                        "use a camera's name, or lat, lon or x, y; above_ground, above_water or z; "
+                        "heading, pitch or dx, dy, dz, ux, uy, uz; fov - each as key=number");
+        if (!out.emplace(key, parse_numbers("--camera " + key, pair.substr(equals + 1), 1)[0]).second)
+            throw Error("--camera: '" + key + "' is given twice");
+        from = comma + 1;
+    }
+    return out;
+}
+
+scene::Camera parse_camera(const std::string& words, const scene::Scene& scene, glm::dvec3 sun,
+                           double aspect) {
+    if (words.find('=') == std::string::npos) {
+        for (const scene::NamedCamera& named : scene.cameras)
+            if (named.name == words)
+                return named.camera;
+        const auto& presets = scene::preset_names();
+        if (std::find(presets.begin(), presets.end(), words) == presets.end()) {
+            std::string names;
+            for (const scene::NamedCamera& named : scene.cameras)
+                names += (names.empty() ? "" : ", ") + named.name;
+            throw Error("--camera: no camera is called '" + words + "'",
+                        "use " + names + ", or key=number pairs (tarn render --help)");
+        }
+        return scene::preset_camera(scene, scene.lakes.front(), words, sun, aspect);
+    }
+    const auto pairs = parse_pairs(words);
+    const auto has = [&](const char* key) { return pairs.count(key) != 0; };
+    const auto get = [&](const char* key, double otherwise) {
+        return has(key) ? pairs.at(key) : otherwise;
+    };
+    const auto exclude = [&](const char* a, const char* b) {
+        if (has(a) && has(b))
+            throw Error(text("--camera: ", a, " and ", b, " exclude each other"));
+    };
+    glm::dvec3 position(0.0);
+    if (has("lat") || has("lon")) {
+        exclude("lat", "x");
+        exclude("lat", "y");
+        if (!has("lat") || !has("lon"))
+            throw Error("--camera: lat and lon go together");
+        const ScenePoint p = geo::to_scene(scene.frame, {pairs.at("lat"), pairs.at("lon")});
+        position = {p.x_m, p.y_m, 0.0};
+    } else if (has("x") && has("y")) {
+        position = {pairs.at("x"), pairs.at("y"), 0.0};
+    } else {
+        throw Error("--camera: no place given", "add lat=..,lon=.. or x=..,y=.. (scene metres)");
+    }
+    exclude("above_ground", "above_water");
+    exclude("above_ground", "z");
+    exclude("above_water", "z");
+    if (has("z"))
+        position.z = pairs.at("z");
+    else if (has("above_water"))
+        position.z = scene.water_level_m(position.x, position.y).value_or(scene.lakes.front().level_m) +
+                     pairs.at("above_water");
+    else
+        position.z = scene.ground.elevation_m(position.x, position.y) + get("above_ground", 2.0);
+    const double fov = get("fov", 50.0);
+    if (has("dx") || has("dy") || has("dz")) {
+        exclude("dx", "heading");
+        exclude("dy", "heading");
+        exclude("dz", "pitch");
+        return scene::look_along(position, {get("dx", 0), get("dy", 0), get("dz", 0)},
+                                 {get("ux", 0), get("uy", 0), get("uz", has("ux") || has("uy") ? 0 : 1)}, fov);
+    }
+    const double heading = get("heading", 0.0) - convergence_at(scene, position.x, position.y);
+    if (!(fov > 0.0 && fov <= 170.0))
+        throw Error(text("--camera: fov is ", fov, " degrees, must be in (0, 170]"));
+    return scene::look(position, heading, std::clamp(get("pitch", 0.0), -90.0, 90.0), fov);
+}
+
+} // namespace
+
+glm::dvec3 sun_direction(const scene::Scene& scene, double julian_date_utc) {
+    const GeoPoint place = scene.lakes.front().position;
+    const geo::SunPosition sun = geo::sun_position(place, julian_date_utc);
+    const ScenePoint p = geo::to_scene(scene.frame, place);
+    return towards(sun.azimuth_deg - convergence_at(scene, p.x_m, p.y_m), sun.elevation_deg);
+}
+
+void add_view_options(CLI::App& c, ViewWords& w) {
+    c.add_option("--camera", w.camera,
+                 "a camera of the scene (overview, shore, top, dive, ...) or key=number pairs: lat,lon or "
+                 "x,y [scene m]; above_ground, above_water or z [m]; heading, pitch or dx,dy,dz,ux,uy,uz; fov")
+        ->capture_default_str();
+    c.add_option("--size", w.size, "WIDTHxHEIGHT [px], up to 16384 each")->capture_default_str();
+    c.add_option("--samples", w.settings.samples, "rays a pixel, 1 to 1024")->capture_default_str();
+    c.add_option("--time", w.time,
+                 "date and time for the sun: 2026-06-21T15:00Z, +HH:MM, or none for solar time; "
+                 "default: 09:30 solar time at midsummer");
+    c.add_option("--sun", w.sun, "AZIMUTH,ELEVATION of the sun [deg from true north, above horizon]");
+    c.add_option("--sun-direction", w.sun_direction, "X,Y,Z towards the sun in scene axes (lab)");
+    c.add_option("--sun-irradiance", w.sun_irradiance, "R,G,B or one number, facing the sun (lab)");
+    c.add_option("--sky-radiance", w.sky_radiance, "R,G,B or one number: an even sky instead of the clear one (lab)");
+    c.add_option("--ground-albedo", w.settings.ground_albedo, "one grey in [0, 1] for all ground (lab)");
+    c.add_option("--absorption-per-m", w.absorption, "R,G,B or one number: of the water [1/m]");
+    c.add_option("--backscattering-per-m", w.backscattering, "R,G,B or one number: of the water [1/m]");
+    c.add_option("--index", w.index, "of refraction of the water, [1, 3]");
+    c.add_option("--fresnel", w.fresnel, "formula for the reflectance of the surface")
+        ->check(CLI::IsMember({"exact", "schlick"}))
+        ->capture_default_str();
+    c.add_option("--least-transmittance", w.settings.least_transmittance,
+                 "underwater paths end where less is left")
+        ->capture_default_str();
+    c.add_flag("--no-shadows", w.no_shadows, "leave out the sun's shadows");
+    c.add_flag("--no-reflection", w.no_reflection, "leave out what the water mirrors");
+    c.add_flag("--no-refraction", w.no_refraction, "leave out what is seen through the surface");
+    c.add_flag("--no-sun-disc", w.no_sun_disc, "leave out the sun itself");
+    c.set_config("--settings", "", "file with any of these options, one name=value a line");
+    c.allow_config_extras(CLI::config_extras_mode::error); // a misspelt name must not pass in silence
+}
+
+scene::View make_view(const ViewWords& w, scene::Scene& scene) {
+    scene::View view;
+    view.settings = w.settings;
+    int width = 0, height = 0;
+    char extra = 0;
+    if (std::sscanf(w.size.c_str(), "%dx%d%c", &width, &height, &extra) != 2)
+        throw Error("--size '" + w.size + "' is not understood", "write WIDTHxHEIGHT, like 1280x720");
+    view.settings.width_px = width;
+    view.settings.height_px = height;
+    view.settings.fresnel = w.fresnel == "schlick" ? scene::Fresnel::schlick : scene::Fresnel::exact;
+    view.settings.shadows = !w.no_shadows;
+    view.settings.reflection = !w.no_reflection;
+    view.settings.refraction = !w.no_refraction;
+    view.settings.validate();
+
+    if (!w.absorption.empty() || !w.backscattering.empty() || w.index)
+        scene.optics.name = "given by hand";
+    if (!w.absorption.empty())
+        scene.optics.absorption_per_m = parse_triple("--absorption-per-m", w.absorption);
+    if (!w.backscattering.empty())
+        scene.optics.backscattering_per_m = parse_triple("--backscattering-per-m", w.backscattering);
+    scene.optics.index = w.index.value_or(scene.optics.index);
+    scene.optics.validate();
+
+    if (int(!w.time.empty()) + int(!w.sun.empty()) + int(!w.sun_direction.empty()) > 1)
+        throw Error("--time, --sun and --sun-direction exclude each other");
+    const GeoPoint place = scene.lakes.front().position;
+    glm::dvec3 sun(0.0);
+    if (!w.sun_direction.empty()) {
+        sun = parse_triple("--sun-direction", w.sun_direction);
+        if (!(glm::length(sun) > 0.0))
+            throw Error("--sun-direction is zero", "give X,Y,Z towards the sun");
+        sun = glm::normalize(sun);
+    } else if (!w.sun.empty()) {
+        const auto v = parse_numbers("--sun", w.sun, 2);
+        if (std::abs(v[1]) > 90.0)
+            throw Error("--sun: the elevation must be in [-90, 90] degrees", "write AZIMUTH,ELEVATION");
+        const ScenePoint p = geo::to_scene(scene.frame, place);
+        sun = towards(v[0] - convergence_at(scene, p.x_m, p.y_m), v[1]);
+    } else {
+        sun = sun_direction(scene, w.time.empty() ? geo::default_time(place) : geo::parse_time(w.time, place));
+    }
+    view.lighting = scene::clear_sky(sun);
+    if (!w.sky_radiance.empty()) {
+        const glm::dvec3 sky = parse_triple("--sky-radiance", w.sky_radiance);
+        view.lighting = scene::uniform_sky(sun, view.lighting.sun_irradiance, sky);
+    }
+    if (!w.sun_irradiance.empty())
+        view.lighting.sun_irradiance = parse_triple("--sun-irradiance", w.sun_irradiance);
+    for (int k = 0; k < 3; ++k)
+        if (!(view.lighting.sun_irradiance[k] >= 0.0 && view.lighting.sky_irradiance[k] >= 0.0))
+            throw Error("--sun-irradiance and --sky-radiance must not be negative");
+    if (w.no_sun_disc)
+        view.lighting.sun_disc = false;
+    view.camera = parse_camera(w.camera, scene, sun, double(width) / height);
+    return view;
+}
+
+} // namespace tarn::app

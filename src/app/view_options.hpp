@@ -1,0 +1,31 @@
+#pragma once
+/// @file view_options.hpp  Camera, light and picture settings as people write them -> a View.
+#include "scene/settings.hpp"
+
+#include <CLI/App.hpp>
+#include <string>
+
+namespace tarn::app {
+
+/// What was typed; empty = not given. The same names serve on the command line and in a settings file.
+struct ViewWords {
+    std::string camera = "overview", size = "1280x720";
+    std::string time, sun, sun_direction, sun_irradiance, sky_radiance;
+    std::string absorption, backscattering;
+    std::optional<double> index;
+    std::string fresnel = "exact";
+    bool no_shadows = false, no_reflection = false, no_refraction = false, no_sun_disc = false;
+    scene::RenderSettings settings;
+};
+
+/// Adds these options to a command, and --settings FILE that reads them.
+void add_view_options(CLI::App& command, ViewWords& words);
+
+/// The view that the words ask for. Water optics given by hand are put into the scene.
+/// @throws tarn::Error  naming the option and what is wrong
+scene::View make_view(const ViewWords& words, scene::Scene& scene);
+
+/// Unit vector towards the sun in scene axes (grid north, not true north), at the first lake.
+glm::dvec3 sun_direction(const scene::Scene& scene, double julian_date_utc);
+
+} // namespace tarn::app

@@ -1,0 +1,74 @@
+#include "gpu/objects.hpp"
+
+#include "core/error.hpp"
+#include "core/text.hpp"
+
+namespace tarn::gpu {
+
+Texture2D::Texture2D(GLenum format, int width_px, int height_px, int levels, Filter filter,
+                     const std::string& label)
+    : format_(format), width_px_(width_px), height_px_(height_px) {
+    GLint limit = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
+    if (width_px < 1 || height_px < 1 || width_px > limit || height_px > limit)
+        throw Error(text(label, " is ", width_px, " x ", height_px, ", this GPU allows up to ", limit,
+                         " a side"),
+                    "use a smaller picture, or import a smaller or coarser scene");
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_2D, 1, &id);
+    name_ = Name<delete_texture>(id);
+    glTextureStorage2D(id, levels, format, width_px, height_px);
+    if (glGetError() == GL_OUT_OF_MEMORY)
+        throw Error(text("out of GPU memory for ", label, " of ", width_px, " x ", height_px),
+                    "use a smaller picture, or import a smaller or coarser scene");
+    const GLint minify = filter == Filter::nearest    ? (levels > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST)
+                         : filter == Filter::linear   ? GL_LINEAR
+                                                      : GL_LINEAR_MIPMAP_LINEAR;
+    glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, minify);
+    glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, filter == Filter::nearest ? GL_NEAREST : GL_LINEAR);
+    glTextureParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    glObjectLabel(GL_TEXTURE, id, static_cast<GLsizei>(label.size()), label.c_str());
+}
+
+void Texture2D::upload(GLenum components, GLenum type, const void* texels) {
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTextureSubImage2D(id(), 0, 0, 0, width_px_, height_px_, components, type, texels);
+}
+
+void Texture2D::download(GLenum components, GLenum type, void* out, std::size_t bytes) const {
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    glGetTextureImage(id(), 0, components, type, static_cast<GLsizei>(bytes), out);
+}
+
+Buffer::Buffer(std::size_t bytes, const void* data) {
+    GLuint id = 0;
+    glCreateBuffers(1, &id);
+    name_ = Name<delete_buffer>(id);
+    glNamedBufferStorage(id, GLsizeiptr(bytes), data, GL_DYNAMIC_STORAGE_BIT);
+}
+
+Timer::Timer() {
+    GLuint id = 0;
+    glCreateQueries(GL_TIME_ELAPSED, 1, &id);
+    query_ = Name<delete_query>(id);
+}
+
+double Timer::milliseconds() const {
+    GLuint64 nanoseconds = 0;
+    glGetQueryObjectui64v(query_.get(), GL_QUERY_RESULT, &nanoseconds);
+    return double(nanoseconds) * 1e-6;
+}
+
+void check_gl(const std::string& activity) {
+    const GLenum code = glGetError();
+    if (code == GL_NO_ERROR)
+        return;
+    const char* word = code == GL_OUT_OF_MEMORY ? "out of GPU memory" : "OpenGL error";
+    std::ostringstream out;
+    out << word << " (0x" << std::hex << code << ") while " << activity;
+    throw Error(out.str(), "run tarn doctor, and try a smaller picture");
+}
+
+} // namespace tarn::gpu

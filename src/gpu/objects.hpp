@@ -1,0 +1,101 @@
+#pragma once
+/// @file objects.hpp  Move-only owners of GL objects. A default-constructed owner is empty (id 0).
+///
+/// All of them need the context that made them to be current, also when they are destroyed.
+#include "gpu/gl.hpp"
+
+#include <cstddef>
+#include <string>
+#include <utility>
+
+namespace tarn::gpu {
+
+/// Owns one GL name and destroys it with `Destroy`.
+template <auto Destroy>
+class Name {
+public:
+    Name() = default;
+    explicit Name(GLuint id) : id_(id) {}
+    ~Name() {
+        if (id_ != 0)
+            Destroy(id_);
+    }
+    Name(Name&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+    Name& operator=(Name&& other) noexcept {
+        std::swap(id_, other.id_);
+        return *this;
+    }
+    GLuint get() const { return id_; }
+
+private:
+    GLuint id_ = 0;
+};
+
+inline void delete_texture(GLuint id) { glDeleteTextures(1, &id); }
+inline void delete_buffer(GLuint id) { glDeleteBuffers(1, &id); }
+inline void delete_query(GLuint id) { glDeleteQueries(1, &id); }
+inline void delete_program(GLuint id) { glDeleteProgram(id); }
+
+/// How texels are looked up between their centres, and beyond the edge.
+enum class Filter { nearest, linear, trilinear };
+
+/// Immutable-storage 2D texture; row 0 first in memory; edges clamp.
+class Texture2D {
+public:
+    Texture2D() = default;
+    /// @param format  sized internal format, e.g. GL_RG16
+    /// @param levels  mip levels, >= 1
+    /// @param label   named in errors and shown in GL debug messages
+    /// @throws tarn::Error  if a side is outside [1, GL_MAX_TEXTURE_SIZE] or memory runs out
+    Texture2D(GLenum format, int width_px, int height_px, int levels, Filter filter,
+              const std::string& label);
+
+    /// Uploads all of level 0, tightly packed.
+    void upload(GLenum components, GLenum type, const void* texels);
+    /// Reads all of level 0 into `bytes` bytes at `out`.
+    void download(GLenum components, GLenum type, void* out, std::size_t bytes) const;
+    void bind(GLuint unit) const { glBindTextureUnit(unit, name_.get()); }
+    void bind_image(GLuint unit, GLenum access, int level = 0) const {
+        glBindImageTexture(unit, name_.get(), level, GL_FALSE, 0, access, format_);
+    }
+    GLuint id() const { return name_.get(); }
+    int width_px() const { return width_px_; }
+    int height_px() const { return height_px_; }
+
+private:
+    Name<delete_texture> name_;
+    GLenum format_ = 0;
+    int width_px_ = 0, height_px_ = 0;
+};
+
+/// Immutable buffer that the CPU may rewrite.
+class Buffer {
+public:
+    Buffer() = default;
+    Buffer(std::size_t bytes, const void* data);
+    void write(const void* data, std::size_t bytes) {
+        glNamedBufferSubData(name_.get(), 0, GLsizeiptr(bytes), data);
+    }
+    GLuint id() const { return name_.get(); }
+
+private:
+    Name<delete_buffer> name_;
+};
+
+/// GPU time between start() and stop().
+class Timer {
+public:
+    Timer();
+    void start() { glBeginQuery(GL_TIME_ELAPSED, query_.get()); }
+    void stop() { glEndQuery(GL_TIME_ELAPSED); }
+    /// Waits for the result [ms]. Software GL answers next to nothing: see docs/limits.md.
+    double milliseconds() const;
+
+private:
+    Name<delete_query> query_;
+};
+
+/// @throws tarn::Error  if GL has noted an error since the last call; says while doing what
+void check_gl(const std::string& activity);
+
+} // namespace tarn::gpu

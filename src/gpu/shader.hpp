@@ -1,0 +1,44 @@
+#pragma once
+/// @file shader.hpp  GLSL with `#include "room/file"`, and linked compute programs.
+#include "gpu/objects.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tarn::gpu {
+
+struct ShaderSource {
+    std::string code;               ///< one translation unit, with #line directives
+    std::vector<std::string> files; ///< file N of "#line L N" is files[N]
+};
+
+/// Where the shaders are: $TARN_SHADERS, beside the installed program, or the source tree.
+/// @throws tarn::Error  naming the places looked at
+std::filesystem::path shader_root();
+
+/// Pastes each included file once, so libraries need no include guards.
+/// @param entry  relative to root, e.g. "passes/trace.comp"
+/// @throws tarn::Error  if a file is missing; names the file and line that asked for it
+ShaderSource load_shader(const std::filesystem::path& root, const std::string& entry);
+
+/// As load_shader(), for code written in memory (used by the GPU function tests).
+ShaderSource expand_shader(const std::filesystem::path& root, const std::string& code,
+                           const std::string& name);
+
+/// Rewrites driver messages "N(L)" / "N:L(" to "lib/fresnel.glsl:L", so that editors can jump there.
+std::string name_files(const std::string& driver_log, const ShaderSource& source);
+
+class ComputeProgram {
+public:
+    ComputeProgram() = default;
+    /// @throws tarn::Error  with the driver's log, file names filled in
+    explicit ComputeProgram(const ShaderSource& source);
+    void use() const { glUseProgram(name_.get()); }
+    GLuint id() const { return name_.get(); }
+
+private:
+    Name<delete_program> name_;
+};
+
+} // namespace tarn::gpu

@@ -1,0 +1,104 @@
+#include "image/compare.hpp"
+
+#include "core/error.hpp"
+#include "core/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tarn::image {
+
+namespace {
+
+void require_same_size(const Image& a, const Image& b) {
+    if (a.width_px != b.width_px || a.height_px != b.height_px)
+        throw Error(text("pictures are ", a.width_px, " x ", a.height_px, " and ", b.width_px, " x ",
+                         b.height_px));
+}
+
+double percentile(std::vector<double> values, double share) {
+    const auto at = values.begin() +
+                    std::ptrdiff_t(std::min(values.size() - 1, std::size_t(share * double(values.size()))));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+} // namespace
+
+Difference compare(const Image& got, const Image& expected) {
+    require_same_size(got, expected);
+    Difference out;
+    if (got.radiance.empty())
+        return out;
+    double mean = 0.0;
+    std::vector<double> brightness;
+    for (const glm::vec3& c : expected.radiance) {
+        brightness.push_back((double(c.r) + c.g + c.b) / 3.0);
+        mean += brightness.back() / double(expected.radiance.size());
+    }
+    const double floor = std::max(1e-3 * mean, 1e-12);
+    double squared = 0.0;
+    std::vector<double> relative(got.radiance.size());
+    for (std::size_t i = 0; i < got.radiance.size(); ++i) {
+        for (int k = 0; k < 3; ++k) {
+            const double a = got.radiance[i][k], b = expected.radiance[i][k];
+            if (!std::isfinite(a) || !std::isfinite(b)) {
+                out.finite = false;
+                relative[i] = std::numeric_limits<double>::infinity();
+                continue;
+            }
+            relative[i] += std::abs(a - b) / std::max(std::abs(b), floor) / 3.0;
+            squared += (a - b) * (a - b) / (3.0 * double(got.radiance.size()));
+        }
+        if (relative[i] > out.max_relative) {
+            out.max_relative = relative[i];
+            out.worst_pixel = i;
+        }
+        out.mean_relative += relative[i] / double(got.radiance.size());
+    }
+    out.p95_relative = percentile(relative, 0.95);
+    out.p99_relative = percentile(relative, 0.99);
+    const double peak = percentile(brightness, 0.99);
+    out.psnr_db = squared > 0.0 ? 10.0 * std::log10(peak * peak / squared)
+                                : std::numeric_limits<double>::infinity();
+    return out;
+}
+
+DistanceDifference compare_distances(const Image& got, const Image& expected, double quantum_m,
+                                     double share) {
+    require_same_size(got, expected);
+    DistanceDifference out;
+    const int w = expected.width_px, h = expected.height_px;
+    const auto at = [w](const Image& image, int x, int y) {
+        return double(image.distance_m[std::size_t(y) * std::size_t(w) + std::size_t(x)]);
+    };
+    for (int y = 0; y < h; ++y)
+        for (int x = 0; x < w; ++x) {
+            ++out.pixels;
+            const double a = at(got, x, y), b = at(expected, x, y);
+            // An edge: the reference itself jumps by a fiftieth, or to the sky, beside this pixel.
+            bool edge = false;
+            for (int dy = -1; dy <= 1; ++dy)
+                for (int dx = -1; dx <= 1; ++dx) {
+                    const int nx = x + dx, ny = y + dy;
+                    if (nx < 0 || ny < 0 || nx >= w || ny >= h)
+                        continue;
+                    const double c = at(expected, nx, ny);
+                    edge |= std::isfinite(c) != std::isfinite(b) ||
+                            (std::isfinite(b) && std::abs(c - b) > 0.02 * std::min(b, c));
+                }
+            if (edge) {
+                ++out.edges;
+                continue;
+            }
+            if (!std::isfinite(a) && !std::isfinite(b))
+                continue;
+            const double off = std::abs(a - b);
+            out.worst_m = std::max(out.worst_m, off);
+            out.different += !(off <= std::max(quantum_m, share * b));
+        }
+    return out;
+}
+
+} // namespace tarn::image

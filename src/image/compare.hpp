@@ -1,0 +1,31 @@
+#pragma once
+/// @file compare.hpp  How far two pictures are apart.
+#include "core/image.hpp"
+
+namespace tarn::image {
+
+/// Figures of a picture held against a reference, linear values.
+/// Relative error of a pixel: |got - expected| / max(|expected|, floor), the mean over channels;
+/// floor is a thousandth of the reference's mean radiance, so that black pixels do not rule.
+struct Difference {
+    double mean_relative = 0.0, p95_relative = 0.0, p99_relative = 0.0, max_relative = 0.0;
+    double psnr_db = 0.0;          ///< peak = the reference's 99th percentile; infinity when equal
+    std::size_t worst_pixel = 0;   ///< index of the greatest relative error
+    bool finite = true;            ///< false if a value of either is not finite: never a pass
+};
+
+/// @throws tarn::Error  if the sizes differ
+Difference compare(const Image& got, const Image& expected);
+
+/// First-hit distances: pixels that differ by more than max(quantum_m, share * distance), in which
+/// one is sky and the other not counting as different.
+struct DistanceDifference {
+    std::size_t pixels = 0;
+    std::size_t edges = 0;     ///< next to a jump of the reference's own distance: not judged
+    std::size_t different = 0; ///< of the others
+    double worst_m = 0.0;      ///< greatest difference among pixels that are no edges
+};
+DistanceDifference compare_distances(const Image& got, const Image& expected, double quantum_m,
+                                     double share);
+
+} // namespace tarn::image

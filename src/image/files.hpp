@@ -1,0 +1,38 @@
+#pragma once
+/// @file files.hpp  Pictures on disk, by OpenImageIO. Everything is written beside its name and then
+///                  renamed, so that no half picture is ever left.
+#include "core/grid.hpp"
+#include "core/image.hpp"
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace tarn::image {
+
+/// Text entries of a file: PNG tEXt chunks, EXR attributes.
+using Metadata = std::map<std::string, std::string>;
+
+/// @throws tarn::Error  naming the file, if it cannot be written
+void write_png(const std::filesystem::path& path, const Picture& picture, const Metadata& metadata);
+
+/// Linear float EXR with channels R, G, B and Z; Z is the distance along the ray in metres,
+/// infinite where only sky is seen.
+void write_exr(const std::filesystem::path& path, const Image& image, const Metadata& metadata);
+
+/// Reads an EXR that write_exr() wrote, or any with R, G and B; without Z distances are infinite.
+Image read_exr(const std::filesystem::path& path);
+
+/// Reads 16-bit codes of a one-channel TIFF. Georeference and scale are GDAL's business.
+/// @throws tarn::Error  if the file is missing, damaged, not 16-bit, or larger than 65536 a side
+Grid<std::uint16_t> read_codes(const std::filesystem::path& path);
+
+/// Reads an 8-bit picture, expanded to four channels.
+Picture read_rgba(const std::filesystem::path& path);
+
+Metadata read_metadata(const std::filesystem::path& path);
+
+/// OpenImageIO's release, for `tarn doctor`.
+std::string library_version();
+
+} // namespace tarn::image

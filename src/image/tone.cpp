@@ -1,0 +1,71 @@
+#include "image/tone.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tarn::image {
+
+namespace {
+double luminance(const glm::vec3& c) { return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b; } // BT.709
+}
+
+double srgb_encode(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+double auto_exposure(const Image& image, double key, double least, double greatest) {
+    std::vector<float> values;
+    values.reserve(image.radiance.size());
+    for (const glm::vec3& c : image.radiance)
+        values.push_back(static_cast<float>(luminance(c)));
+    if (values.empty())
+        return 1.0;
+    std::sort(values.begin(), values.end());
+    const std::size_t from = values.size() * 2 / 100;
+    const std::size_t to = std::max(from + 1, values.size() * 98 / 100);
+    double sum = 0.0;
+    for (std::size_t i = from; i < to; ++i)
+        sum += std::log(std::max(double(values[i]), 1e-6));
+    return std::clamp(key / std::exp(sum / double(to - from)), least, greatest);
+}
+
+Picture encode_linear(const Image& image) {
+    Picture out{.width_px = image.width_px, .height_px = image.height_px, .channels = 3, .bytes = {}};
+    for (const glm::vec3& c : image.radiance)
+        for (int k = 0; k < 3; ++k)
+            out.bytes.push_back(static_cast<std::uint8_t>(
+                std::lround(255.0 * srgb_encode(std::clamp(double(c[k]), 0.0, 1.0)))));
+    return out;
+}
+
+Picture tone_map(const Image& image, double exposure) {
+    constexpr double white = 4.0; // radiance after exposure that becomes full white
+    // 4 x 4 Bayer thresholds, mean zero, within half an 8-bit step.
+    static constexpr int bayer[16] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+    Picture out{.width_px = image.width_px, .height_px = image.height_px, .channels = 3, .bytes = {}};
+    out.bytes.resize(image.radiance.size() * 3);
+    // A table replaces three million powers; its steps are a sixteenth of an 8-bit step.
+    static const auto table = [] {
+        std::vector<float> t(4097);
+        for (std::size_t i = 0; i < t.size(); ++i)
+            t[i] = static_cast<float>(255.0 * srgb_encode(std::pow(double(i) / 4096.0, 2.0)));
+        return t;
+    }();
+    for (std::size_t i = 0; i < image.radiance.size(); ++i) {
+        const std::size_t x = i % std::size_t(image.width_px), y = i / std::size_t(image.width_px);
+        const double dither = (bayer[(y % 4) * 4 + x % 4] + 0.5) / 16.0 - 0.5;
+        for (int k = 0; k < 3; ++k) {
+            const double v = std::max(0.0, double(image.radiance[i][k]) * exposure);
+            const double curved = std::min(1.0, v * (1.0 + v / (white * white)) / (1.0 + v));
+            const double place = std::sqrt(curved) * 4096.0; // the table is even in the square root
+            const auto low = std::min<std::size_t>(4095, std::size_t(place));
+            const double f = place - double(low);
+            const double code = table[low] * (1.0 - f) + table[low + 1] * f;
+            out.bytes[3 * i + std::size_t(k)] =
+                static_cast<std::uint8_t>(std::clamp(std::lround(code + dither), 0l, 255l));
+        }
+    }
+    return out;
+}
+
+} // namespace tarn::image

@@ -1,0 +1,22 @@
+#pragma once
+/// @file tone.hpp  Linear radiance -> a picture for the eye: exposure, tone curve, sRGB.
+#include "core/image.hpp"
+
+namespace tarn::image {
+
+/// Exposure that suits a picture: the middle of its brightness (the logarithmic mean of luminances
+/// between the 2nd and the 98th percentile) becomes `key` of white, within [least, greatest].
+double auto_exposure(const Image& image, double key, double least, double greatest);
+
+/// Reinhard's curve with a white point (Reinhard et al. 2002, eq. 4), per channel, then the sRGB
+/// transfer function (IEC 61966-2-1) and 8 bits with a half-step ordered dither against banding.
+/// @param exposure  factor on radiance, > 0
+Picture tone_map(const Image& image, double exposure);
+
+/// No curve: radiance 1 is white, more is clipped; sRGB encoded.
+Picture encode_linear(const Image& image);
+
+/// sRGB transfer function of a linear value in [0, 1].
+double srgb_encode(double linear);
+
+} // namespace tarn::image

@@ -1,1 +1,0 @@
-namespace tarn { int room_scene; }

@@ -1,0 +1,53 @@
+#pragma once
+/// @file scene.hpp  What is to be drawn, as plain data: both tracers read THIS, so that they cannot
+///                  disagree about the input.
+#include "core/heightfield.hpp"
+#include "core/image.hpp"
+#include "core/import_report.hpp"
+#include "core/lake_record.hpp"
+#include "geo/frame_data.hpp"
+#include "scene/camera.hpp"
+#include "scene/water_optics.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tarn::scene {
+
+/// A viewpoint kept in the scene; import puts the four presets there.
+struct NamedCamera {
+    std::string name;
+    Camera camera;
+};
+
+/// Heights at which the ground's colours change, in the scene's vertical datum.
+struct GroundLook {
+    double tree_line_m = 1900.0;
+    double snow_line_m = 2700.0;
+};
+
+/// Summer snow and tree lines by latitude: 5400 m - 58 m per degree and 800 m below, a fit by eye
+/// to the Alps, Fuji, the Cascades and Scandinavia. For the look only.
+GroundLook ground_look(double lat_deg);
+
+struct Scene {
+    geo::Frame frame;
+    Heightfield ground, water; ///< same size, spacing and place
+    std::vector<LakeRecord> lakes; ///< at least one
+    WaterOptics optics;
+    GroundLook look;
+    std::vector<NamedCamera> cameras;
+    std::optional<Ortho> ortho;
+    ImportReport report;
+
+    /// The lake whose level is nearest to `level_m`.
+    const LakeRecord& lake_at_level(double level_m) const;
+    /// Water level at a scene position, or nothing where it is dry.
+    std::optional<double> water_level_m(double x, double y) const;
+
+    /// @throws tarn::Error  if sizes, numbers or lakes do not fit together
+    void validate() const;
+};
+
+} // namespace tarn::scene

@@ -1,0 +1,46 @@
+#include "scene/settings.hpp"
+
+#include "core/error.hpp"
+#include "core/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tarn::scene {
+
+namespace {
+template <class T>
+void require_range(const char* field, T value, T low, T high) {
+    if (!(value >= low && value <= high)) // also rejects NaN
+        throw Error(text(field, " is ", value, ", must be in [", low, ", ", high, "]"));
+}
+} // namespace
+
+void RenderSettings::validate() const {
+    require_range("width", width_px, 1, 16384);
+    require_range("height", height_px, 1, 16384);
+    require_range("samples", samples, 1, 1024);
+    require_range("least transmittance", least_transmittance, 1e-6, 0.5);
+    if (ground_albedo)
+        require_range("ground albedo", *ground_albedo, 0.0, 1.0);
+}
+
+glm::dvec2 sample_offset(int index, int count) {
+    if (count == 1)
+        return {0.5, 0.5};
+    constexpr double plastic = 1.32471795724474602596; // root of x^3 = x + 1
+    const auto fraction = [](double x) { return x - std::floor(x); };
+    return {fraction(0.5 + (index + 1) / plastic), fraction(0.5 + (index + 1) / (plastic * plastic))};
+}
+
+double shadow_lift_m(const Heightfield& ground) {
+    return 0.01 * ground.spacing_m + 2.0 * ground.scale_m;
+}
+
+double greatest_path_m(const WaterOptics& optics, const RenderSettings& settings) {
+    const glm::dvec3 c = optics.attenuation_per_m();
+    const double least = std::min({c.x, c.y, c.z});
+    return least > 1e-8 ? std::min(1e9, -std::log(settings.least_transmittance) / least) : 1e9;
+}
+
+} // namespace tarn::scene

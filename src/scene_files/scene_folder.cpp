@@ -1,0 +1,169 @@
+#include "scene_files/scene_folder.hpp"
+
+#include "core/error.hpp"
+#include "core/text.hpp"
+#include "image/files.hpp"
+#include "scene_files/scene_json.hpp"
+
+#include <cstring>
+#include <fcntl.h>
+#include <fstream>
+#include <iterator>
+#include <signal.h>
+#include <stdio.h>
+#include <unistd.h>
+
+namespace tarn::scene_files {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A regular file inside the folder; a link could lead anywhere.
+fs::path member(const fs::path& folder, const std::string& name) {
+    const fs::path path = folder / name;
+    std::error_code failed;
+    const auto status = fs::symlink_status(path, failed);
+    if (status.type() == fs::file_type::symlink)
+        throw Error(path.string() + ": is a link, which a scene folder may not hold",
+                    "copy the file itself into the folder");
+    if (status.type() != fs::file_type::regular)
+        throw Error(path.string() + ": is missing", "import the scene again");
+    return path;
+}
+
+bool is_scene(const fs::path& folder) {
+    std::error_code failed;
+    return fs::is_regular_file(folder / "scene.json", failed);
+}
+
+/// What crashed imports of this name left behind: "<.name.partial-PID>" of processes that are gone.
+void sweep(const fs::path& parent, const std::string& prefix) {
+    std::error_code failed;
+    for (const auto& entry : fs::directory_iterator(parent, failed)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with(prefix))
+            continue;
+        const long pid = std::strtol(name.c_str() + prefix.size(), nullptr, 10);
+        if (pid > 0 && pid != ::getpid() && ::kill(pid_t(pid), 0) != 0 && errno == ESRCH)
+            fs::remove_all(entry.path(), failed);
+    }
+}
+
+} // namespace
+
+scene::Scene load(const fs::path& folder) {
+    std::error_code failed;
+    if (!fs::is_directory(folder, failed))
+        throw Error(folder.string() + ": no such scene folder", "make one with tarn import");
+    if (!is_scene(folder))
+        throw Error(folder.string() + ": holds no scene.json", "name a folder that tarn import made");
+    std::ifstream in(member(folder, "scene.json"), std::ios::binary);
+    if (!in)
+        throw Error((folder / "scene.json").string() + ": cannot be read", "check its permissions");
+    const std::string source{std::istreambuf_iterator<char>(in), {}};
+    FileNames files;
+    try {
+        scene::Scene scene = from_json(source, files);
+        const auto fill = [&](Heightfield& field, const std::string& name) {
+            const GridSize expected = field.codes.size;
+            Grid<std::uint16_t> codes = image::read_codes(member(folder, name));
+            if (!(codes.size == expected))
+                throw Error(text(name, " is ", codes.size.cols, " x ", codes.size.rows,
+                                 ", scene.json says ", expected.cols, " x ", expected.rows),
+                            "import the scene again");
+            field.codes = std::move(codes);
+        };
+        fill(scene.ground, files.ground);
+        fill(scene.water, files.water);
+        if (scene.ortho) {
+            Picture picture = image::read_rgba(member(folder, files.ortho));
+            if (picture.width_px != scene.ortho->picture.width_px ||
+                picture.height_px != scene.ortho->picture.height_px)
+                throw Error(files.ortho + " has another size than scene.json says",
+                            "import the scene again");
+            scene.ortho->picture = std::move(picture);
+        }
+        scene.validate();
+        return scene;
+    } catch (Error& error) {
+        error.during((folder / "scene.json").string());
+        throw;
+    }
+}
+
+StagedFolder::StagedFolder(const fs::path& target) : target_(target.lexically_normal()) {
+    if (!target_.has_filename())
+        target_ = target_.parent_path(); // "scene/" means "scene"
+    if (target_.empty() || target_ == "." || target_ == ".." || target_ == "/")
+        throw Error("the scene needs a folder name of its own", "give one with -o NAME");
+    std::error_code failed;
+    if (fs::exists(target_, failed) && !is_scene(target_) &&
+        !(fs::is_directory(target_, failed) && fs::is_empty(target_, failed)))
+        throw Error(target_.string() + ": exists and is not a scene folder; it is left alone",
+                    "choose another name with -o");
+    const fs::path parent = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
+    fs::create_directories(parent, failed);
+    const std::string prefix = "." + target_.filename().string() + ".partial-";
+    sweep(parent, prefix);
+    partial_ = parent / (prefix + std::to_string(::getpid()));
+    if (!fs::create_directory(partial_, failed))
+        throw Error(parent.string() + ": cannot be written (" + failed.message() + ")",
+                    "check the folder and its permissions");
+}
+
+StagedFolder::~StagedFolder() {
+    std::error_code ignored;
+    if (!done_)
+        fs::remove_all(partial_, ignored);
+}
+
+void StagedFolder::write_text(const std::string& name, const std::string& content) const {
+    std::ofstream out(partial_ / name, std::ios::binary);
+    out << content;
+    out.close();
+    if (!out)
+        throw Error((partial_ / name).string() + ": cannot be written",
+                    "check the free space and permissions");
+}
+
+void StagedFolder::commit() {
+    for (const auto& entry : fs::directory_iterator(partial_)) { // on disk before it gets its name
+        const int file = ::open(entry.path().c_str(), O_RDONLY);
+        if (file >= 0) {
+            ::fsync(file);
+            ::close(file);
+        }
+    }
+    std::error_code failed;
+    if (fs::exists(target_, failed)) {
+        // Both names change places in one step; then the old scene goes.
+        if (::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) {
+            done_ = true;
+            fs::remove_all(partial_, failed);
+            return;
+        }
+        // Some file systems cannot exchange: the old scene steps aside for a moment.
+        const fs::path aside = partial_.string() + "-old";
+        fs::rename(target_, aside, failed);
+        if (!failed) {
+            fs::rename(partial_, target_, failed);
+            if (failed) {
+                std::error_code ignored;
+                fs::rename(aside, target_, ignored);
+            } else {
+                done_ = true;
+                fs::remove_all(aside, failed);
+                return;
+            }
+        }
+    } else {
+        fs::rename(partial_, target_, failed);
+    }
+    if (failed)
+        throw Error(target_.string() + ": cannot be put in place (" + failed.message() + ")",
+                    "check the folder and its permissions");
+    done_ = true;
+}
+
+} // namespace tarn::scene_files

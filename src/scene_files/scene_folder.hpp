@@ -1,0 +1,33 @@
+#pragma once
+/// @file scene_folder.hpp  Reading a scene folder, and replacing one as a whole or not at all.
+#include "scene/scene.hpp"
+
+#include <filesystem>
+
+namespace tarn::scene_files {
+
+/// @throws tarn::Error  naming the folder, file and field: missing, damaged, of another size than
+///                      scene.json says, or leading outside the folder
+scene::Scene load(const std::filesystem::path& folder);
+
+/// A folder being written beside its final name. commit() puts it in place in one step; without it
+/// the destructor removes everything that was written, and an older scene of that name stays.
+class StagedFolder {
+public:
+    /// @throws tarn::Error  if `target` exists and is neither a scene nor an empty folder, or its
+    ///                      parent cannot be written
+    explicit StagedFolder(const std::filesystem::path& target);
+    ~StagedFolder();
+    StagedFolder(const StagedFolder&) = delete;
+    StagedFolder& operator=(const StagedFolder&) = delete;
+
+    const std::filesystem::path& path() const { return partial_; }
+    void write_text(const std::string& name, const std::string& content) const;
+    void commit();
+
+private:
+    std::filesystem::path target_, partial_;
+    bool done_ = false;
+};
+
+} // namespace tarn::scene_files
