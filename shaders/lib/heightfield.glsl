@@ -12,6 +12,8 @@
 // Fails    at float32's limits only: beyond some 2^24 cells of distance, or where the ray is flatter
 //          than the rounding of its height. Figures: docs/limits.md.
 
+#include "shared/view_block.h"
+
 struct Field {
     ivec2 cells;       // nodes minus one
     vec2 nodes;        // as floats
@@ -22,8 +24,17 @@ struct Field {
     int step_limit;    // the walk ends here whatever happens
 };
 
-// Origin and direction per metre of path: columns, rows, height.
+// field_of — the field that a view block describes.
+Field field_of(ViewBlock view) {
+    return Field(ivec2(view.grid.xy) - 1, view.grid.xy, vec2(0.0, view.heights.y), view.heights.zw,
+                 view.grid.w, int(view.walk.x), int(view.walk.y));
+}
+
+// Origin and direction per metre of path: columns, rows, height. Columns and rows count from the
+// node `base`, near the origin: whole nodes stay whole numbers, and float32 holds what is left to a
+// ten-millionth of the distance travelled, wherever in the field the ray starts.
 struct Ray {
+    ivec2 base;
     vec3 origin;
     vec3 direction;
 };
@@ -34,6 +45,15 @@ struct Hit {
     ivec2 cell;
     vec2 inside;  // position in the cell, [0, 1]
 };
+
+// ray_from — a ray from node `base` + origin.xy (columns, rows) at height origin.z.
+//
+//   direction  scene axes (x east, y north), unit
+Ray ray_from(ivec2 base, vec3 origin, vec3 direction, float spacing_m) {
+    vec2 whole = floor(origin.xy);
+    return Ray(base + ivec2(whole), vec3(origin.xy - whole, origin.z),
+               vec3(direction.x / spacing_m, -direction.y / spacing_m, direction.z));
+}
 
 // bilinear — heights in gather order (0,1) (1,1) (1,0) (0,0), columns and rows.
 float bilinear(vec4 h, vec2 p) {
@@ -72,12 +92,16 @@ bool trace_field(sampler2D heights, sampler2D maxima, Field field, Ray ray, floa
                  bool with_water, out Hit hit) {
     vec2 o = ray.origin.xy;
     vec2 d = ray.direction.xy;
+    vec2 low = vec2(-ray.base), high = vec2(field.cells - ray.base);
+    bvec2 still = lessThan(abs(d), vec2(1e-12)); // never leaves its column or row: must be over the field
+    if ((still.x && (o.x < low.x || o.x > high.x)) || (still.y && (o.y < low.y || o.y > high.y)))
+        return false;
     d = mix(d, vec2(d.x < 0.0 ? -1e-12 : 1e-12, d.y < 0.0 ? -1e-12 : 1e-12),
             lessThan(abs(d), vec2(1e-12)));
     vec2 inverse = 1.0 / d;
     float oz = ray.origin.z, dz = ray.direction.z;
 
-    vec2 t_low = -o * inverse, t_high = (vec2(field.cells) - o) * inverse;
+    vec2 t_low = (low - o) * inverse, t_high = (high - o) * inverse;
     vec2 t_first = min(t_low, t_high), t_last = max(t_low, t_high);
     float t = max(0.0, max(t_first.x, t_first.y));
     float t_end = min(t_max, min(t_last.x, t_last.y));
@@ -100,7 +124,7 @@ bool trace_field(sampler2D heights, sampler2D maxima, Field field, Ray ray, floa
     ivec2 block = ivec2(0);
 
     for (int i = 0; i < field.step_limit; ++i) {
-        vec2 border = vec2((block + ahead) << (2 * level));
+        vec2 border = vec2(((block + ahead) << (2 * level)) - ray.base);
         vec2 t_border = (border - o) * inverse;
         float t_out = min(min(t_border.x, t_border.y), t_end);
         float lowest = oz + (dz < 0.0 ? t_out : t) * dz;
@@ -109,8 +133,8 @@ bool trace_field(sampler2D heights, sampler2D maxima, Field field, Ray ray, floa
             vec2 highest = texelFetch(maxima, block, 2 * (level - 1)).rg;
             if (lowest <= (with_water ? highest.g : highest.r) + slack) {
                 --level;
-                vec2 child = floor((o + t * d) / float(1 << (2 * level)));
-                block = clamp(ivec2(child), block * 4, block * 4 + 3);
+                ivec2 child = (ivec2(floor(o + t * d)) + ray.base) >> (2 * level);
+                block = clamp(child, block * 4, block * 4 + 3);
                 block = min(block, (field.cells - 1) >> (2 * level));
                 continue;
             }
@@ -128,8 +152,8 @@ bool trace_field(sampler2D heights, sampler2D maxima, Field field, Ray ray, floa
                     highest = max(highest, max(max(water.x, water.y), max(water.z, water.w)));
             }
             if (lowest <= highest + slack) {
-                vec2 p_in = clamp(o + t * d - vec2(block), 0.0, 1.0);
-                vec2 p_out = clamp(o + t_out * d - vec2(block), 0.0, 1.0);
+                vec2 p_in = clamp(o + t * d - vec2(block - ray.base), 0.0, 1.0);
+                vec2 p_out = clamp(o + t_out * d - vec2(block - ray.base), 0.0, 1.0);
                 float z_in = oz + t * dz, z_out = oz + t_out * dz;
                 vec2 run = p_out - p_in;
                 float bend = -run.x * run.y;

@@ -20,11 +20,13 @@ float value_noise(vec2 p, uint seed) {
     return mix(mix(corner.x, corner.y, t.x), mix(corner.z, corner.w, t.x), t.y);
 }
 
-// faded_noise — three octaves from `wavelength` down, each fading to its mean, 0.5, before a
-//               footprint of `footprint` metres would alias it.
+// faded_noise — three octaves from `wavelength` down, each turned against the last so that the
+//               lattice does not show, each fading to its mean, 0.5, before a footprint of
+//               `footprint` metres would alias it.
 float faded_noise(vec2 p_m, float wavelength_m, float footprint_m, uint seed) {
     float sum = 0.0, weight = 0.5;
     for (uint octave = 0u; octave < 3u; ++octave) {
+        p_m = vec2(0.8 * p_m.x - 0.6 * p_m.y, 0.6 * p_m.x + 0.8 * p_m.y); // 36.87 degrees
         float share = clamp(2.0 - 4.0 * footprint_m / wavelength_m, 0.0, 1.0);
         if (share > 0.0)
             sum += weight * share * (value_noise(p_m / wavelength_m, seed + octave) - 0.5);

@@ -33,3 +33,9 @@ vec2 ground_gradient(sampler2D heights, vec2 size, ivec2 cell, vec2 inside, floa
 vec3 normal_of(vec2 gradient_m_per_node, float spacing_m) {
     return normalize(vec3(-gradient_m_per_node.x, gradient_m_per_node.y, spacing_m));
 }
+
+// water_share — 1 where all nodes around carry a lake's level, 0 where none does, bilinear between.
+float water_share(sampler2D heights, vec2 size, ivec2 cell, vec2 inside) {
+    vec4 carries = vec4(greaterThan(textureGather(heights, (vec2(cell) + 1.0) / size, 1), vec4(0.0)));
+    return mix(mix(carries.w, carries.z, inside.x), mix(carries.x, carries.y, inside.x), inside.y);
+}

@@ -31,10 +31,6 @@ const float sky_entering = 0.934;
 
 bool on(uint flag) { return (view.counts.z & flag) != 0u; }
 
-Ray ray_from(vec3 origin, vec3 direction) {
-    return Ray(origin, vec3(direction.x / view.grid.z, -direction.y / view.grid.z, direction.z));
-}
-
 // A ray still to be followed, and how much its radiance counts in the pixel.
 struct Segment {
     Ray ray;
@@ -60,9 +56,10 @@ vec3 sky(vec3 direction) {
     return radiance;
 }
 
-bool lit_along(Field field, vec3 from, vec3 towards, float t_max) {
+bool lit_along(Field field, ivec2 base, vec3 from, vec3 towards, float t_max) {
     Hit ignored;
-    return !trace_field(heights, maxima, field, ray_from(from, towards), t_max, false, ignored);
+    return !trace_field(heights, maxima, field, ray_from(base, from, towards, view.grid.z), t_max, false,
+                        ignored);
 }
 
 void main() {
@@ -70,8 +67,7 @@ void main() {
     ivec2 size = ivec2(view.counts.xy);
     if (any(greaterThanEqual(pixel, size)))
         return;
-    Field field = Field(ivec2(view.grid.xy) - 1, view.grid.xy, vec2(0.0, view.heights.y),
-                        view.heights.zw, view.grid.w, int(view.walk.x), int(view.walk.y));
+    Field field = field_of(view);
     float index = view.attenuation.w, d_max = view.backscattering.w;
     vec3 attenuation = view.attenuation.rgb;
 
@@ -90,7 +86,7 @@ void main() {
     Segment todo[2];
     int pending = 1;
     bool under_water = on(TARN_FLAG_UNDER_WATER);
-    todo[0] = Segment(ray_from(view.camera.xyz, direction), direction, vec3(1.0), under_water,
+    todo[0] = Segment(ray_from(view.walk.zw, view.camera.xyz, direction, view.grid.z), direction, vec3(1.0), under_water,
                       view.options.y, view.options.z > 0.5, 0.0);
     vec3 radiance = vec3(0.0);
     float first_distance = far_m;
@@ -110,7 +106,11 @@ void main() {
         bool at_surface = found ? hit.water : now.in_water && to_surface <= d_max;
         if (turn == 0)
             first_distance = found || at_surface ? travelled : far_m;
+        // Where the ray has come to: a node and what is left, like the ray itself.
+        ivec2 base = found ? hit.cell : now.ray.base;
         vec3 place = now.ray.origin + travelled * now.ray.direction;
+        if (found)
+            place.xy = hit.inside;
 
         vec3 weight = now.weight;
         if (now.in_water) {
@@ -144,11 +144,11 @@ void main() {
             vec3 start = vec3(place.xy, level);
             vec3 bounced = vec3(now.direction.xy, -now.direction.z);
             if (on(TARN_FLAG_REFLECTION))
-                todo[pending++] = Segment(ray_from(start, bounced), bounced, weight * mirror,
+                todo[pending++] = Segment(ray_from(base, start, bounced, view.grid.z), bounced, weight * mirror,
                                           now.in_water, level, bed_known, travelled);
             if (on(TARN_FLAG_REFRACTION) && mirror < 1.0) {
                 vec3 bent = refracted(now.direction, eta);
-                todo[pending++] = Segment(ray_from(start, bent), bent, weight * through,
+                todo[pending++] = Segment(ray_from(base, start, bent, view.grid.z), bent, weight * through,
                                           !now.in_water, level, bed_known, travelled);
             }
             continue;
@@ -164,15 +164,16 @@ void main() {
         vec3 normal = normal_of(gradient, view.grid.z);
         float footprint = view.camera.w * (now.before_m + travelled);
         float level = now.in_water ? now.level : view.look.z;
-        float height = now.in_water ? min(place.z - level, -1e-3) : max(place.z - level, 0.0);
+        vec2 nodes = vec2(base) + place.xy;
         vec3 albedo;
         if (view.look.w >= 0.0) {
             albedo = vec3(view.look.w);
         } else {
-            albedo = ground_albedo(place.xy * view.grid.z, height, view.look.x - level,
+            float near_water = water_share(heights, field.nodes, hit.cell, hit.inside);
+            albedo = ground_albedo(nodes * view.grid.z, place.z - level, now.in_water, near_water, view.look.x - level,
                                    view.look.y - level, length(gradient) / view.grid.z, footprint);
             if (on(TARN_FLAG_ORTHO) && !now.in_water) {
-                vec2 at = (place.xy - view.ortho.xy) / view.ortho.zw;
+                vec2 at = (nodes - view.ortho.xy) / view.ortho.zw;
                 if (all(greaterThan(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)))) {
                     float lod = max(0.0, log2(max(footprint, 1e-6) / view.ortho_lod.x));
                     vec4 photo = textureLod(ortho, at, lod);
@@ -195,7 +196,7 @@ void main() {
                     bool wet_leg = now.in_water && leg == 0;
                     float rise = max(level - from.z, 0.0);
                     float t_leg = wet_leg ? rise / towards.z : far_m;
-                    lit = lit_along(field, from, wet_leg ? towards : sun, t_leg);
+                    lit = lit_along(field, base, from, wet_leg ? towards : sun, t_leg);
                     if (wet_leg)
                         from = vec3(from.xy + vec2(towards.x, -towards.y) / view.grid.z * t_leg,
                                     max(level, from.z));

@@ -12,6 +12,7 @@
 namespace tarn::shared {
 using vec4 = glm::vec4;
 using uvec4 = glm::uvec4;
+using ivec4 = glm::ivec4;
 #endif
 
 #define TARN_BLOCK_VIEW 0     // uniform block ViewBlock
@@ -33,7 +34,7 @@ using uvec4 = glm::uvec4;
 #define TARN_FLAG_UNDER_WATER 64u
 
 struct ViewBlock {
-    vec4 camera;          // xyz: position (grid), w: angle of a pixel [rad]
+    vec4 camera;          // xyz: position from node walk.zw (grid), w: angle of a pixel [rad]
     vec4 forward;         // xyz: unit, w: -
     vec4 right;           // xyz: unit, w: tangent of half the horizontal field of view
     vec4 up;              // xyz: unit, w: tangent of half the vertical field of view
@@ -53,7 +54,7 @@ struct ViewBlock {
                           // z: 1 if that lake's bed is known, w: weight of this sample
     vec4 offset;          // xy: position inside the pixel, z: index of the sample, w: -
     uvec4 counts;         // x: width, y: height [px], z: flags, w: lakes
-    uvec4 walk;           // x: level of the root block, y: limit of steps, zw: -
+    ivec4 walk;           // x: level of the root block, y: limit of steps, zw: node by the camera
 };
 
 #ifdef __cplusplus

@@ -25,7 +25,7 @@ namespace {
 
 struct Words {
     ViewWords view;
-    std::string scene, exposure = "auto", tone = "reinhard", against;
+    std::string scene, exposure = "auto", tone = "eye", against;
     std::vector<std::string> outputs;
     bool reference = false;
 };
@@ -42,11 +42,11 @@ double choose_exposure(const Words& words, const Image& picture, const scene::Sc
     const scene::Lighting& light = view.lighting;
     const double incident =
         (light.sun_irradiance.y * std::max(light.sun_direction.z, 0.0) + light.sky_irradiance.y) / 3.14159265;
-    const double usual = 2.2 / std::max(incident, 1e-4);
+    const double usual = 1.25 / std::max(incident, 1e-4);
     const glm::dvec3& p = view.camera.position;
     const auto water = scene.water_level_m(p.x, p.y);
     const bool dive = water && p.z < *water;
-    return image::auto_exposure(picture, 0.40, dive ? usual * 0.2 : usual * 0.5, usual * (dive ? 400.0 : 2.0));
+    return image::auto_exposure(picture, 0.25, dive ? usual * 0.2 : usual * 0.5, usual * (dive ? 400.0 : 2.0));
 }
 
 image::Metadata describe(const scene::Scene& scene, const scene::View& view, const std::string& device) {
@@ -148,7 +148,7 @@ void add_render(CLI::App& app, Run& run) {
     add_view_options(*c, words->view);
     c->add_option("--exposure", words->exposure, "factor on radiance, or auto")->capture_default_str();
     c->add_option("--tone", words->tone, "tone curve of a .png; none: linear radiance, 1 = white")
-        ->check(CLI::IsMember({"reinhard", "none"}))
+        ->check(CLI::IsMember({"eye", "none"}))
         ->capture_default_str();
     c->add_flag("--reference", words->reference, "by the double-precision CPU tracer: slow, needs no GPU");
     c->add_option("--against", words->against, "print how far the picture is from this .exr");

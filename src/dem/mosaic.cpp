@@ -283,7 +283,7 @@ Mosaic keep_grid(std::vector<Source>& sources, const MosaicOptions& options,
     out.west_m = west - out.frame.origin_easting_m;
     out.north_m = north - out.frame.origin_northing_m;
     const double reach = 0.5 * s * std::max(size.cols, size.rows);
-    const double residual = fit_datum_shift(out.frame, sources.front().crs, reach);
+    const double residual = sample_datum_shift(out.frame, sources.front().crs, reach);
     if (residual > 0.005)
         out.notes.push_back(text("latitude and longitude follow the datum shift to ",
                                  fixed(residual, 3), " m only"));
@@ -470,69 +470,46 @@ std::optional<geo::Frame> transverse_mercator(const OGRSpatialReference& crs) {
     return frame;
 }
 
-double fit_datum_shift(geo::Frame& frame, const OGRSpatialReference& crs, double reach_m) {
+double sample_datum_shift(geo::Frame& frame, const OGRSpatialReference& crs, double reach_m) {
     frame.datum_shift = {};
     auto to = between(crs, wgs84());
-    constexpr int side = 7;
-    // Least squares by normal equations on a symmetric 7 x 7 lattice in [-1, 1]^2: well conditioned.
-    double normal[6][8] = {};
-    struct Sample {
-        double u, v, dx, dy;
-    };
-    std::vector<Sample> samples;
-    double greatest = 0.0;
-    for (int i = 0; i < side * side; ++i) {
-        const double u = 2.0 * (i % side) / (side - 1) - 1.0, v = 2.0 * (i / side) / (side - 1) - 1.0;
-        double lon = frame.origin_easting_m + u * reach_m, lat = frame.origin_northing_m + v * reach_m;
+    // Where PROJ puts a scene position, against a plain projection of that place.
+    const auto difference = [&](double x, double y) -> ScenePoint {
+        double lon = frame.origin_easting_m + x, lat = frame.origin_northing_m + y;
         GdalMessages quiet;
         if (!to->Transform(1, &lon, &lat))
             throw Error("the DEM's CRS cannot be turned into latitude and longitude here",
                         "check that CRS and coordinates belong together, or give --crs");
         const ScenePoint plain = geo::to_scene(frame, {lat, lon});
-        samples.push_back({u, v, u * reach_m - plain.x_m, v * reach_m - plain.y_m});
-        greatest = std::max(greatest, std::hypot(samples.back().dx, samples.back().dy));
-    }
+        return {x - plain.x_m, y - plain.y_m};
+    };
+    geo::DatumShift datum{.side = 33, .reach_m = reach_m, .east_m = {}, .north_m = {}};
+    double greatest = 0.0;
+    const auto place = [&](double i) { return reach_m * (2.0 * i / (datum.side - 1) - 1.0); };
+    for (int r = 0; r < datum.side; ++r)
+        for (int c = 0; c < datum.side; ++c) {
+            const ScenePoint d = difference(place(c), place(r));
+            datum.east_m.push_back(d.x_m);
+            datum.north_m.push_back(d.y_m);
+            greatest = std::max(greatest, std::hypot(d.x_m, d.y_m));
+        }
     if (greatest > 5'000.0)
         throw Error(text("PROJ and the CRS's own parameters disagree by ", fixed(greatest, 1), " m"),
                     "the CRS text may be damaged: give it again with --crs EPSG:...");
     if (greatest < 0.0005)
         return greatest; // the same datum as far as anyone can tell
-    for (const Sample& s : samples) {
-        const double basis[6] = {1, s.u, s.v, s.u * s.u, s.u * s.v, s.v * s.v};
-        for (int r = 0; r < 6; ++r) {
-            for (int c = 0; c < 6; ++c)
-                normal[r][c] += basis[r] * basis[c];
-            normal[r][6] += basis[r] * s.dx;
-            normal[r][7] += basis[r] * s.dy;
+    double error = 0.0;
+    for (int r = 0; r + 1 < datum.side; ++r)
+        for (int c = 0; c + 1 < datum.side; ++c) {
+            const ScenePoint d = difference(place(c + 0.5), place(r + 0.5));
+            const auto i = std::size_t(r * datum.side + c), n = std::size_t(datum.side);
+            const auto mean = [&](const std::vector<double>& v) {
+                return 0.25 * (v[i] + v[i + 1] + v[i + n] + v[i + n + 1]);
+            };
+            error = std::max(error, std::hypot(mean(datum.east_m) - d.x_m, mean(datum.north_m) - d.y_m));
         }
-    }
-    for (int p = 0; p < 6; ++p) { // Gauss-Jordan; the matrix is positive definite
-        const double pivot = normal[p][p];
-        for (double& value : normal[p])
-            value /= pivot;
-        for (int r = 0; r < 6; ++r)
-            if (r != p) {
-                const double f = normal[r][p];
-                for (int c = 0; c < 8; ++c)
-                    normal[r][c] -= f * normal[p][c];
-            }
-    }
-    frame.datum_shift.length_m = reach_m;
-    for (int k = 0; k < 6; ++k) {
-        frame.datum_shift.east[std::size_t(k)] = normal[k][6];
-        frame.datum_shift.north[std::size_t(k)] = normal[k][7];
-    }
-    double residual = 0.0;
-    for (const Sample& s : samples) {
-        const double basis[6] = {1, s.u, s.v, s.u * s.u, s.u * s.v, s.v * s.v};
-        double dx = s.dx, dy = s.dy;
-        for (int k = 0; k < 6; ++k) {
-            dx -= normal[k][6] * basis[k];
-            dy -= normal[k][7] * basis[k];
-        }
-        residual = std::max(residual, std::hypot(dx, dy));
-    }
-    return residual;
+    frame.datum_shift = std::move(datum);
+    return error;
 }
 
 Mosaic build_mosaic(std::vector<Source>& sources, const MosaicOptions& options,

@@ -49,8 +49,9 @@ Grid<float> onto_grid(Source& source, const Mosaic& mosaic, const std::string& r
 std::optional<geo::Frame> transverse_mercator(const OGRSpatialReference& crs);
 
 /// Asks PROJ how the frame's datum differs from WGS 84 over a square of half side `reach_m`
-/// around scene (0, 0), and stores it. Returns the greatest residual [m] of the fit.
-double fit_datum_shift(geo::Frame& frame, const OGRSpatialReference& crs, double reach_m);
+/// around scene (0, 0), and stores it. Returns the greatest error [m] found between the lattice's
+/// places.
+double sample_datum_shift(geo::Frame& frame, const OGRSpatialReference& crs, double reach_m);
 
 /// GDAL's affine of a grid whose pixel CENTRES are the mosaic's nodes.
 GeoTransform geo_transform(const geo::Frame& frame, double west_m, double north_m,

@@ -6,6 +6,7 @@
 #include <GeographicLib/Geodesic.hpp>
 #include <GeographicLib/PolygonArea.hpp>
 #include <GeographicLib/TransverseMercator.hpp>
+#include <algorithm>
 #include <cmath>
 
 namespace tarn::geo {
@@ -30,8 +31,20 @@ double origin_arc_m(const GeographicLib::TransverseMercator& tm, const Frame& fr
     return y;
 }
 
-double shift(const std::array<double, 6>& c, double u, double v) {
-    return c[0] + c[1] * u + c[2] * v + c[3] * u * u + c[4] * u * v + c[5] * v * v;
+/// Bilinear on the lattice; beyond it the outermost cells go on.
+ScenePoint shift(const DatumShift& datum, double x, double y) {
+    if (datum.side < 2)
+        return {};
+    const double cells = datum.side - 1;
+    const double c = (x / datum.reach_m + 1.0) * 0.5 * cells, r = (y / datum.reach_m + 1.0) * 0.5 * cells;
+    const double c0 = std::clamp(std::floor(c), 0.0, cells - 1.0), r0 = std::clamp(std::floor(r), 0.0, cells - 1.0);
+    const double u = c - c0, v = r - r0;
+    const auto at = [&](const std::vector<double>& values) {
+        const auto i = std::size_t(r0) * std::size_t(datum.side) + std::size_t(c0);
+        const auto n = std::size_t(datum.side);
+        return (1 - v) * ((1 - u) * values[i] + u * values[i + 1]) + v * ((1 - u) * values[i + n] + u * values[i + n + 1]);
+    };
+    return {at(datum.east_m), at(datum.north_m)};
 }
 
 } // namespace
@@ -57,24 +70,21 @@ ScenePoint to_scene(const Frame& frame, GeoPoint point) {
     const double plain_x = e + frame.false_easting_m - frame.origin_easting_m;
     const double plain_y =
         n - origin_arc_m(tm, frame) + frame.false_northing_m - frame.origin_northing_m;
-    const DatumShift& datum = frame.datum_shift;
     double x = plain_x, y = plain_y;
     for (int i = 0; i < 4; ++i) { // the shift varies by millimetres per metre at most: contracts
-        const double u = x / datum.length_m, v = y / datum.length_m;
-        x = plain_x + shift(datum.east, u, v);
-        y = plain_y + shift(datum.north, u, v);
+        const ScenePoint by = shift(frame.datum_shift, x, y);
+        x = plain_x + by.x_m;
+        y = plain_y + by.y_m;
     }
     return {x, y};
 }
 
 GeoPoint to_geo(const Frame& frame, ScenePoint point) {
     const auto tm = projection(frame);
-    const DatumShift& datum = frame.datum_shift;
-    const double u = point.x_m / datum.length_m, v = point.y_m / datum.length_m;
-    const double e = point.x_m - shift(datum.east, u, v) + frame.origin_easting_m -
-                     frame.false_easting_m;
-    const double n = point.y_m - shift(datum.north, u, v) + frame.origin_northing_m -
-                     frame.false_northing_m + origin_arc_m(tm, frame);
+    const ScenePoint by = shift(frame.datum_shift, point.x_m, point.y_m);
+    const double e = point.x_m - by.x_m + frame.origin_easting_m - frame.false_easting_m;
+    const double n = point.y_m - by.y_m + frame.origin_northing_m - frame.false_northing_m +
+                     origin_arc_m(tm, frame);
     GeoPoint out;
     tm.Reverse(frame.lon0_deg, e, n, out.lat_deg, out.lon_deg);
     return out;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <libnova/julian_day.h>
+#include <libnova/precession.h>
 #include <libnova/solar.h>
 #include <libnova/transform.h>
 #include <regex>
@@ -12,8 +13,11 @@
 namespace tarn::geo {
 
 SunPosition sun_position(GeoPoint place, double julian_date_utc) {
-    ln_equ_posn equatorial{};
-    ln_get_solar_equ_coords(julian_date_utc, &equatorial);
+    // libnova gives the sun in the frame of J2000, but counts hour angles in that of the date: without
+    // precession the sun would stand .36 degree off in 2026.
+    ln_equ_posn j2000{}, equatorial{};
+    ln_get_solar_equ_coords(julian_date_utc, &j2000);
+    ln_get_equ_prec(&j2000, julian_date_utc, &equatorial);
     ln_lnlat_posn observer{.lng = place.lon_deg, .lat = place.lat_deg};
     ln_hrz_posn horizontal{};
     ln_get_hrz_from_equ(&equatorial, &observer, julian_date_utc, &horizontal);

@@ -77,17 +77,16 @@ DistanceDifference compare_distances(const Image& got, const Image& expected, do
         for (int x = 0; x < w; ++x) {
             ++out.pixels;
             const double a = at(got, x, y), b = at(expected, x, y);
-            // An edge: the reference itself jumps by a fiftieth, or to the sky, beside this pixel.
             bool edge = false;
-            for (int dy = -1; dy <= 1; ++dy)
-                for (int dx = -1; dx <= 1; ++dx) {
-                    const int nx = x + dx, ny = y + dy;
-                    if (nx < 0 || ny < 0 || nx >= w || ny >= h)
-                        continue;
-                    const double c = at(expected, nx, ny);
-                    edge |= std::isfinite(c) != std::isfinite(b) ||
-                            (std::isfinite(b) && std::abs(c - b) > 0.02 * std::min(b, c));
-                }
+            const auto near = [&](int dx, int dy) {
+                return 1.0 / at(expected, std::clamp(x + dx, 0, w - 1), std::clamp(y + dy, 0, h - 1)); // sky: 0
+            };
+            for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{0, 1}, std::pair{1, 1}, std::pair{1, -1}}) {
+                if (x + dx >= w || x - dx < 0 || y + dy >= h || y + dy < 0 || y - dy < 0 || y - dy >= h)
+                    continue;
+                const double a1 = near(dx, dy), b1 = near(-dx, -dy), c1 = near(0, 0);
+                edge |= std::abs(a1 + b1 - 2.0 * c1) > 0.02 * std::max({a1, b1, c1});
+            }
             if (edge) {
                 ++out.edges;
                 continue;

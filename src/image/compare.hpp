@@ -17,11 +17,12 @@ struct Difference {
 /// @throws tarn::Error  if the sizes differ
 Difference compare(const Image& got, const Image& expected);
 
-/// First-hit distances: pixels that differ by more than max(quantum_m, share * distance), in which
-/// one is sky and the other not counting as different.
+/// First-hit distances: pixels that differ by more than max(quantum_m, share * distance); sky beside
+/// no sky is different too. 1/distance is linear over the picture of a plane, however grazing, so an
+/// edge is where its second difference exceeds 2 % of it.
 struct DistanceDifference {
     std::size_t pixels = 0;
-    std::size_t edges = 0;     ///< next to a jump of the reference's own distance: not judged
+    std::size_t edges = 0;     ///< beside an outline or sharp crease of the reference: not judged
     std::size_t different = 0; ///< of the others
     double worst_m = 0.0;      ///< greatest difference among pixels that are no edges
 };

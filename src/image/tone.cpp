@@ -39,7 +39,9 @@ Picture encode_linear(const Image& image) {
 }
 
 Picture tone_map(const Image& image, double exposure) {
-    constexpr double white = 4.0; // radiance after exposure that becomes full white
+    constexpr double contrast = 1.3;
+    // Semi-saturation such that mid grey, .18, stays .18.
+    const double half = std::pow(0.18, contrast) * (1.0 - 0.18) / 0.18;
     // 4 x 4 Bayer thresholds, mean zero, within half an 8-bit step.
     static constexpr int bayer[16] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
     Picture out{.width_px = image.width_px, .height_px = image.height_px, .channels = 3, .bytes = {}};
@@ -56,7 +58,8 @@ Picture tone_map(const Image& image, double exposure) {
         const double dither = (bayer[(y % 4) * 4 + x % 4] + 0.5) / 16.0 - 0.5;
         for (int k = 0; k < 3; ++k) {
             const double v = std::max(0.0, double(image.radiance[i][k]) * exposure);
-            const double curved = std::min(1.0, v * (1.0 + v / (white * white)) / (1.0 + v));
+            const double powered = std::pow(v, contrast);
+            const double curved = powered / (powered + half);
             const double place = std::sqrt(curved) * 4096.0; // the table is even in the square root
             const auto low = std::min<std::size_t>(4095, std::size_t(place));
             const double f = place - double(low);

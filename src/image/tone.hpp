@@ -8,8 +8,9 @@ namespace tarn::image {
 /// between the 2nd and the 98th percentile) becomes `key` of white, within [least, greatest].
 double auto_exposure(const Image& image, double key, double least, double greatest);
 
-/// Reinhard's curve with a white point (Reinhard et al. 2002, eq. 4), per channel, then the sRGB
-/// transfer function (IEC 61966-2-1) and 8 bits with a half-step ordered dither against banding.
+/// The eye's own response curve x^n / (x^n + s^n) (Naka & Rushton 1966) with n = 1.3, per channel,
+/// leaving mid grey where it is; then the sRGB transfer function (IEC 61966-2-1) and 8 bits with a
+/// half-step ordered dither against banding.
 /// @param exposure  factor on radiance, > 0
 Picture tone_map(const Image& image, double exposure);
 

@@ -34,8 +34,10 @@ inline double faded_noise(glm::dvec2 p_m, double wavelength_m, double footprint_
     double out = 0.5;
     for (std::uint32_t octave = 0; octave < 3; ++octave) {
         const double length = wavelength_m * std::pow(0.4, octave);
+        const double turn = (octave + 1) * std::atan2(0.6, 0.8), c = std::cos(turn), sn = std::sin(turn);
+        const glm::dvec2 turned(c * p_m.x - sn * p_m.y, sn * p_m.x + c * p_m.y);
         const double share = std::clamp(2.0 - 4.0 * footprint_m / length, 0.0, 1.0);
-        out += std::pow(0.5, octave + 1) * share * (value_noise(p_m / length, seed + octave) - 0.5);
+        out += std::pow(0.5, octave + 1) * share * (value_noise(turned / length, seed + octave) - 0.5);
     }
     return out;
 }

@@ -91,11 +91,24 @@ private:
         return normal_of(g, scene_.ground.spacing_m);
     }
 
-    glm::dvec3 albedo(const Hit& hit, double height_m, double level_m, double slope, double footprint) const {
+    /// 1 where the nodes around carry a lake's level, falling to 0 over one cell.
+    double shore_share(const Hit& hit) const {
+        const Grid<std::uint16_t>& codes = scene_.water.codes;
+        const int c = std::clamp(int(hit.col), 0, codes.size.cols - 2);
+        const int r = std::clamp(int(hit.row), 0, codes.size.rows - 2);
+        const double u = hit.col - c, v = hit.row - r;
+        double share = 0.0;
+        for (int k = 0; k < 4; ++k)
+            if (codes[{c + k % 2, r + k / 2}] != no_water_code)
+                share += (k % 2 ? u : 1 - u) * (k / 2 ? v : 1 - v);
+        return share;
+    }
+
+    glm::dvec3 albedo(const Hit& hit, bool bed, double level_m, double slope, double footprint) const {
         if (settings_.ground_albedo)
             return glm::dvec3(*settings_.ground_albedo);
         const double s = scene_.ground.spacing_m;
-        return ground_albedo({hit.col * s, hit.row * s}, height_m, scene_.look.tree_line_m - level_m,
+        return ground_albedo({hit.col * s, hit.row * s}, hit.point.z - level_m, bed, shore_share(hit), scene_.look.tree_line_m - level_m,
                              scene_.look.snow_line_m - level_m, slope, footprint);
     }
 
@@ -103,7 +116,7 @@ private:
         double slope = 0.0;
         const glm::dvec3 normal = normal_at(hit, slope);
         const double level = scene_.lakes.front().level_m;
-        glm::dvec3 colour = albedo(hit, std::max(hit.point.z - level, 0.0), level, slope, footprint);
+        glm::dvec3 colour = albedo(hit, false, level, slope, footprint);
         if (!settings_.ground_albedo && !photo_.empty()) {
             const glm::dvec4 photo = photo_.at(hit.point.x, hit.point.y, footprint);
             colour = colour * (1.0 - photo.a) + glm::dvec3(photo) * photo.a;
@@ -120,8 +133,7 @@ private:
     glm::dvec3 bed(const Hit& hit, double level, double footprint) const {
         double slope = 0.0;
         const glm::dvec3 normal = normal_at(hit, slope);
-        const glm::dvec3 colour =
-            albedo(hit, std::min(hit.point.z - level, -1e-3), level, slope, footprint);
+        const glm::dvec3 colour = albedo(hit, true, level, slope, footprint);
         const double depth = std::max(level - hit.point.z, 0.0);
         glm::dvec3 irradiance = light_.sky_irradiance * sky_entering *
                                 transmittance(attenuation_, sky_slant * depth) * (1.0 + normal.z) / 2.0;

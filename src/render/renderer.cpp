@@ -90,12 +90,9 @@ void Renderer::build_maxima() {
     const int w = wide >= high ? std::max(wide, side) : wide;
     const int h = high > wide ? std::max(high, side) : high;
     maxima_ = gpu::Texture2D(GL_RG32F, w, h, levels, gpu::Filter::nearest, "block maxima");
-    block_.walk = {static_cast<std::uint32_t>(root_level_),
-                   static_cast<std::uint32_t>(8 * (block_.grid.x + block_.grid.y) + 256), 0, 0};
+    block_.walk = {root_level_, int(8 * (block_.grid.x + block_.grid.y) + 256), 0, 0};
     view_buffer_.write(&block_, sizeof block_);
-    glBindBufferBase(GL_UNIFORM_BUFFER, TARN_BLOCK_VIEW, view_buffer_.id());
-    heights_.bind(TARN_TEXTURE_HEIGHTS);
-    maxima_.bind(TARN_TEXTURE_MAXIMA);
+    bind_field();
     block_maxima_.use();
     maxima_.bind_image(TARN_IMAGE_MAXIMA, GL_WRITE_ONLY, 0);
     glDispatchCompute(groups(w), groups(h), 1);
@@ -110,6 +107,12 @@ void Renderer::build_maxima() {
     gpu::check_gl("building the block maxima");
 }
 
+void Renderer::bind_field() const {
+    glBindBufferBase(GL_UNIFORM_BUFFER, TARN_BLOCK_VIEW, view_buffer_.id());
+    heights_.bind(TARN_TEXTURE_HEIGHTS);
+    maxima_.bind(TARN_TEXTURE_MAXIMA);
+}
+
 void Renderer::prepare(const scene::View& view) {
     const scene::RenderSettings& settings = view.settings;
     settings.validate();
@@ -120,8 +123,13 @@ void Renderer::prepare(const scene::View& view) {
     const double half = std::tan(0.5 * camera.fov_deg * degree);
     const double pixel_rad = 2.0 * half / settings.height_px;
     const glm::dvec3& p = camera.position;
-    block_.camera = {float(ground.col(p.x)), float(ground.row(p.y)), float(p.z - ground.offset_m),
-                     float(pixel_rad)};
+    const double col = ground.col(p.x), row = ground.row(p.y);
+    if (!(std::abs(col) < 1e9 && std::abs(row) < 1e9 && std::abs(p.z) < 1e9))
+        throw Error("the camera is too far away from the scene", "check its position");
+    block_.walk.z = int(std::floor(col));
+    block_.walk.w = int(std::floor(row));
+    block_.camera = {float(col - std::floor(col)), float(row - std::floor(row)),
+                     float(p.z - ground.offset_m), float(pixel_rad)};
     block_.forward = glm::vec4(glm::vec3(camera.forward), 0.0f);
     block_.right = glm::vec4(glm::vec3(camera.right), float(half * settings.width_px / settings.height_px));
     block_.up = glm::vec4(glm::vec3(camera.up), float(half));
@@ -167,10 +175,8 @@ void Renderer::prepare(const scene::View& view) {
                                    gpu::Filter::nearest, "distances");
     }
     trace_.use();
-    glBindBufferBase(GL_UNIFORM_BUFFER, TARN_BLOCK_VIEW, view_buffer_.id());
+    bind_field();
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_LAKES, lakes_.id());
-    heights_.bind(TARN_TEXTURE_HEIGHTS);
-    maxima_.bind(TARN_TEXTURE_MAXIMA);
     sky_.bind(TARN_TEXTURE_SKY);
     ortho_.bind(TARN_TEXTURE_ORTHO);
     radiance_.bind_image(TARN_IMAGE_RADIANCE, GL_READ_WRITE);

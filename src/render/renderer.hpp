@@ -29,6 +29,9 @@ public:
     /// Uploads camera, light and settings, and makes the target images.
     void prepare(const scene::View& view);
 
+    /// Binds heights, maxima and the view block, for a program of one's own (tests).
+    void bind_field() const;
+
 private:
     void upload_scene();
     void build_maxima();

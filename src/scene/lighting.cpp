@@ -11,7 +11,7 @@ namespace tarn::scene {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double wavelength_um[3] = {0.610, 0.550, 0.465};
+constexpr double wavelength_um[3] = {0.620, 0.545, 0.450};
 
 /// Relative optical air mass (Kasten & Young 1989); 1 at the zenith, 38 at the horizon.
 double air_mass(double elevation_rad) {
@@ -27,9 +27,9 @@ struct Air {
 
 Air air(int channel) {
     const double w = wavelength_um[channel];
-    constexpr double ozone[3] = {0.038, 0.027, 0.003}; // 300 DU times the Chappuis cross-section
+    constexpr double ozone[3] = {0.033, 0.025, 0.002}; // 300 DU times the Chappuis cross-section
     return {0.008569 * std::pow(w, -4.0) * (1.0 + 0.0113 / (w * w)),
-            0.08 * std::pow(w / 0.55, -1.3), ozone[channel]};
+            0.05 * std::pow(w / 0.55, -1.3), ozone[channel]};
 }
 
 /// Phase functions with mean 1 over the sphere.

@@ -36,7 +36,7 @@ inline constexpr double sun_radius_rad = 0.004654;
 ///
 /// @param sun_direction  unit; a sun below the horizon gives a faint twilight sky
 /// Source  Rayleigh optical depth .008569 w^-4 (1 + .0113 w^-2), w in um (Hansen & Travis 1974);
-///         aerosol optical depth .08 at 550 nm, Angstrom exponent 1.3, asymmetry .76; ozone
+///         aerosol optical depth .05 at 550 nm, Angstrom exponent 1.3, asymmetry .76; ozone
 ///         300 DU (Chappuis band); air mass by Kasten & Young (1989); two-stream transmittance of
 ///         a scattering layer by the Eddington approximation (Shettle & Weinman 1970).
 Lighting clear_sky(glm::dvec3 sun_direction);

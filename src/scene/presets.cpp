@@ -93,7 +93,7 @@ Camera overview(const Scene& scene, const LakeRecord& lake, glm::dvec3 sun, doub
             const double half_depth = std::abs(view.x) * place.half.x + std::abs(view.y) * place.half.y;
             const double spread = std::tan(0.5 * fov * degree) * aspect;
             const double distance =
-                std::max(1.15 * half_width / spread + 0.55 * half_depth, 1.35 * half_depth);
+                std::max(1.02 * half_width / spread + 0.45 * half_depth, 1.3 * half_depth);
             const glm::dvec2 p = place.centre - view * distance;
             const double level = lake.level_m;
             double z = level + distance * std::tan(-pitch * degree) * 0.9;
@@ -209,8 +209,8 @@ Camera dive(const Scene& scene, const LakeRecord& lake, glm::dvec3 sun) {
     const double bed = g.elevation_m(best), depth = lake.level_m - bed;
     // Along the slope, with the bank on one side: bed below, the mirror of the surface above.
     const double heading = std::atan2(best_view.x, best_view.y) / degree + 35.0;
-    const double z = bed + 0.55 * depth;
-    return look({g.x_m(best.col), g.y_m(best.row), z}, heading, -2.0, 70.0);
+    const double z = bed + 0.4 * depth;
+    return look({g.x_m(best.col), g.y_m(best.row), z}, heading, 8.0, 75.0);
 }
 
 } // namespace

@@ -8,8 +8,6 @@ namespace tarn::scene {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// Fills everything at or below the level that is connected to the middle (8 neighbours).
 Scene fill(const std::function<double(double, double)>& height, int side, double half_m,
            double level_m) {

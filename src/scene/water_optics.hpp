@@ -1,7 +1,7 @@
 #pragma once
 /// @file water_optics.hpp  What the water does to light, per colour channel.
 ///
-/// Channels are narrow bands at 610, 550 and 465 nm. Forward scattering, 97 % and more of all
+/// Channels are narrow bands at 620, 545 and 450 nm. Forward scattering, 97 % and more of all
 /// scattering in natural water, is counted as not scattered at all (quasi-single-scattering
 /// approximation, Gordon 1973): what weakens a ray is a + b_b.
 #include <glm/vec3.hpp>
@@ -11,9 +11,9 @@ namespace tarn::scene {
 
 struct WaterOptics {
     std::string name = "clear lake";
-    /// Absorption a [1/m], [0, 100]. Pure water (Pope & Fry 1997: .264, .057, .0102) plus
-    /// dissolved organic matter of a clear lake, .12 exp(-.015 (wavelength - 440)) /m.
-    glm::dvec3 absorption_per_m{0.274, 0.080, 0.092};
+    /// Absorption a [1/m], [0, 100]. Pure water (Pope & Fry 1997: .2755, .052, .0092) plus
+    /// dissolved organic matter of a clear lake, .03 exp(-.015 (wavelength - 440)) /m.
+    glm::dvec3 absorption_per_m{0.2775, 0.058, 0.035};
     /// Backscattering b_b [1/m], [0, 100]: fine mineral particles, almost white.
     glm::dvec3 backscattering_per_m{0.0060, 0.0065, 0.0070};
     double index = 1.333; ///< of refraction, [1, 3]

@@ -190,12 +190,15 @@ geo::Frame read_frame(const Field& f) {
     frame.wkt = f["wkt"].string();
     if (f.has("datum_shift")) {
         const Field d = f["datum_shift"];
-        frame.datum_shift.length_m = d["length_m"].number(1e-3, 1e8);
-        for (std::size_t k = 0; k < 6; ++k) {
-            d["east"].array_size(6, 6);
-            d["north"].array_size(6, 6);
-            frame.datum_shift.east[k] = d["east"].at(k).number(-1e4, 1e4);
-            frame.datum_shift.north[k] = d["north"].at(k).number(-1e4, 1e4);
+        geo::DatumShift& shift = frame.datum_shift;
+        shift.side = d["side"].integer(2, 257);
+        shift.reach_m = d["reach_m"].number(1e-3, 1e8);
+        const auto count = std::size_t(shift.side) * std::size_t(shift.side);
+        for (const auto& [name, values] : {std::pair{"east_m", &shift.east_m}, std::pair{"north_m", &shift.north_m}}) {
+            const Field list = d[name];
+            list.array_size(count, count);
+            for (std::size_t k = 0; k < count; ++k)
+                values->push_back(list.at(k).number(-1e4, 1e4));
         }
     }
     return frame;
@@ -218,9 +221,10 @@ std::string to_json(const scene::Scene& scene, const FileNames& files) {
                   {"proj", f.proj},
                   {"wkt", f.wkt}};
     if (!(f.datum_shift == geo::DatumShift{}))
-        frame["datum_shift"] = {{"length_m", f.datum_shift.length_m},
-                                {"east", f.datum_shift.east},
-                                {"north", f.datum_shift.north}};
+        frame["datum_shift"] = {{"side", f.datum_shift.side},
+                                {"reach_m", f.datum_shift.reach_m},
+                                {"east_m", f.datum_shift.east_m},
+                                {"north_m", f.datum_shift.north_m}};
     const auto heights = [](const Heightfield& h, const std::string& file) {
         return json{{"file", file}, {"offset_m", h.offset_m}, {"scale_m", h.scale_m}};
     };

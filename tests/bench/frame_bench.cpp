@@ -1,0 +1,176 @@
+// tarn_frame_bench — GPU time of whole calm frames of synthetic lakes. Made of what draws alone:
+// needs OpenGL 4.5 and EGL, no GDAL and no OpenImageIO, so it runs on a bare GPU machine.
+//
+//   tarn_frame_bench [--side N,N,...] [--size WxH,WxH,...] [--view high,shore,dive]
+//                    [--frames N] [--json FILE] [--ppm PREFIX]
+#include "core/error.hpp"
+#include "core/text.hpp"
+#include "gpu/context.hpp"
+#include "render/renderer.hpp"
+#include "scene/presets.hpp"
+#include "scene/samples.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <glm/geometric.hpp>
+#include <iostream>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace tarn;
+
+std::vector<std::string> split(const std::string& words) {
+    std::vector<std::string> out;
+    std::size_t from = 0;
+    while (from <= words.size()) {
+        const std::size_t comma = std::min(words.find(',', from), words.size());
+        out.push_back(words.substr(from, comma - from));
+        from = comma + 1;
+    }
+    return out;
+}
+
+scene::Camera camera_for(const std::string& view) {
+    if (view == "high")
+        return scene::look({-900, -6500, 3300}, 8.0, -22.0, 45.0);
+    if (view == "shore")
+        return scene::look({-400, -2300, 952}, 5.0, -4.0, 55.0);
+    return scene::look({600, -1500, 918}, 200.0, 6.0, 75.0); // dive
+}
+
+struct Times {
+    double median_ms, low_ms, high_ms; ///< quartiles
+    const char* clock;
+};
+
+/// GPU timer where it works, else from finish to finish with the CPU's clock (software GL answers
+/// about a nanosecond to every timer query).
+Times measure(render::Renderer& renderer, int frames) {
+    for (int i = 0; i < 3; ++i)
+        renderer.draw_once();
+    glFinish();
+    std::vector<double> gpu, cpu;
+    gpu::Timer timer;
+    for (int i = 0; i < frames; ++i) {
+        const auto start = std::chrono::steady_clock::now();
+        timer.start();
+        renderer.draw_once();
+        timer.stop();
+        glFinish();
+        cpu.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+        gpu.push_back(timer.milliseconds());
+    }
+    std::sort(gpu.begin(), gpu.end());
+    std::sort(cpu.begin(), cpu.end());
+    const std::size_t n = gpu.size();
+    const bool usable = gpu[n / 2] > 1e-3;
+    const auto& t = usable ? gpu : cpu;
+    return {t[n / 2], t[n / 4], t[n * 3 / 4], usable ? "gpu timer" : "finish to finish"};
+}
+
+void write_ppm(const std::string& path, const Image& image) {
+    std::ofstream out(path, std::ios::binary);
+    out << "P6\n" << image.width_px << " " << image.height_px << "\n255\n";
+    for (const glm::vec3& c : image.radiance)
+        for (int k = 0; k < 3; ++k) {
+            const double p = std::pow(std::max(0.0, 1.6 * double(c[k])), 1.3);
+            out.put(char(std::lround(255.0 * std::pow(p / (p + 0.49), 1.0 / 2.2))));
+        }
+}
+
+int run(int argc, char** argv) {
+    std::string sides = "1024,4096", sizes = "800x600,1920x1080,3840x2160", views = "high,shore,dive";
+    std::string json_path, ppm;
+    int frames = 41;
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        if (i + 1 >= argc)
+            throw Error(word + " needs a value");
+        const std::string value = argv[++i];
+        if (word == "--side")
+            sides = value;
+        else if (word == "--size")
+            sizes = value;
+        else if (word == "--view")
+            views = value;
+        else if (word == "--frames")
+            frames = std::max(1, std::atoi(value.c_str()));
+        else if (word == "--json")
+            json_path = value;
+        else if (word == "--ppm")
+            ppm = value;
+        else
+            throw Error("unknown option " + word);
+    }
+    const gpu::Context context;
+    std::cout << "device: " << context.renderer() << ", OpenGL " << context.version() << "\n";
+    std::string json = "{\"device\": \"" + context.renderer() + "\", \"results\": [";
+    bool first = true;
+    for (const std::string& side : split(sides)) {
+        const scene::Scene scene = scene::mountain_lake(std::atoi(side.c_str()));
+        const auto load = std::chrono::steady_clock::now();
+        render::Renderer renderer(scene);
+        glFinish();
+        const double load_ms =
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - load).count();
+        std::printf("field %s^2: upload, maxima and shaders %.0f ms\n", side.c_str(), load_ms);
+        for (const std::string& name : split(views))
+            for (const std::string& size : split(sizes)) {
+                int w = 0, h = 0;
+                if (std::sscanf(size.c_str(), "%dx%d", &w, &h) != 2)
+                    throw Error("--size '" + size + "' is not understood");
+                struct Mode {
+                    const char* name;
+                    bool shadows, split;
+                };
+                for (const Mode mode : {Mode{"all", true, true}, Mode{"no shadows", false, true},
+                                        Mode{"primary rays", false, false}}) {
+                    scene::View view;
+                    view.camera = camera_for(name);
+                    view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.5, -0.4, 0.75)));
+                    view.settings = {.width_px = w, .height_px = h, .samples = 1, .shadows = mode.shadows,
+                                     .reflection = mode.split, .refraction = mode.split};
+                    if (!mode.split)
+                        view.settings.ground_albedo = 0.2; // the walk alone, without colours
+                    renderer.prepare(view);
+                    const Times t = measure(renderer, frames);
+                    std::printf("%6s^2  %-5s  %-9s  %-12s  %9.3f ms  (quartiles %.3f to %.3f, %s)\n", side.c_str(),
+                                name.c_str(), size.c_str(), mode.name, t.median_ms, t.low_ms, t.high_ms, t.clock);
+                    json += text(first ? "\n" : ",\n", "{\"field\": ", side, ", \"view\": \"", name, "\", \"width\": ", w,
+                                 ", \"height\": ", h, ", \"mode\": \"", mode.name, "\", \"median_ms\": ", t.median_ms,
+                                 ", \"q1_ms\": ", t.low_ms, ", \"q3_ms\": ", t.high_ms, ", \"clock\": \"", t.clock, "\"}");
+                    first = false;
+                    if (mode.split && mode.shadows && size == split(sizes).front()) {
+                        const Image image = renderer.draw(view);
+                        glm::dvec3 sum(0.0);
+                        for (const glm::vec3& c : image.radiance)
+                            sum += glm::dvec3(c) / double(image.radiance.size());
+                        std::printf("               mean radiance %.6f %.6f %.6f\n", sum.r, sum.g, sum.b);
+                        if (!ppm.empty())
+                            write_ppm(ppm + "_" + side + "_" + name + ".ppm", image);
+                    }
+                }
+            }
+    }
+    json += "\n]}\n";
+    if (!json_path.empty())
+        std::ofstream(json_path) << json;
+    return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const std::exception& error) {
+        std::cerr << "tarn_frame_bench: " << error.what() << "\n";
+        return 1;
+    }
+}

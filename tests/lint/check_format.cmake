@@ -1,0 +1,7 @@
+cmake_minimum_required(VERSION 3.25)
+file(GLOB_RECURSE files ${ROOT}/src/*.?pp ${ROOT}/tests/*.?pp ${ROOT}/data_samples/*.?pp)
+execute_process(COMMAND ${CLANG_FORMAT} --dry-run --Werror ${files} RESULT_VARIABLE failed ERROR_VARIABLE said)
+if(failed)
+    string(SUBSTRING "${said}" 0 3000 said)
+    message(FATAL_ERROR "not formatted; run scripts/format\n${said}")
+endif()

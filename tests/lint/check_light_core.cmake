@@ -1,0 +1,18 @@
+cmake_minimum_required(VERSION 3.25)
+# What draws (core, scene, gpu, render) must run where there is no GDAL and no OpenImageIO: the
+# benchmark made of it alone may need libglvnd's OpenGL and EGL and the C and C++ run time, no more.
+execute_process(COMMAND readelf -d ${PROGRAM} OUTPUT_VARIABLE dynamic COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "\\(NEEDED\\)[^\n]*\\[[^]]*\\]" needed "${dynamic}")
+set(bad "")
+foreach(line IN LISTS needed)
+    string(REGEX MATCH "\\[([^]]*)\\]" _ "${line}")
+    if(NOT CMAKE_MATCH_1 MATCHES "^(libOpenGL|libEGL|libGLdispatch|libc|libm|ld-linux-x86-64|libstdc\\+\\+|libgcc_s)\\.so")
+        string(APPEND bad "  ${CMAKE_MATCH_1}\n")
+    endif()
+endforeach()
+if(bad)
+    message(FATAL_ERROR "what draws links with more than libglvnd:\n${bad}")
+endif()
+if(NOT needed MATCHES "libEGL" OR NOT needed MATCHES "libOpenGL")
+    message(FATAL_ERROR "the program under test does not draw: ${needed}")
+endif()

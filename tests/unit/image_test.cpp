@@ -1,0 +1,125 @@
+// The yardstick is measured before anything is measured with it.
+#include "core/error.hpp"
+#include "image/annotate.hpp"
+#include "image/compare.hpp"
+#include "image/files.hpp"
+#include "image/tone.hpp"
+#include "support/files.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+using namespace tarn;
+using namespace tarn::image;
+using test_support::TempFolder;
+
+namespace {
+Image flat(int w, int h, float value) {
+    Image image{.width_px = w, .height_px = h};
+    image.radiance.assign(std::size_t(w) * std::size_t(h), glm::vec3(value));
+    image.distance_m.assign(image.radiance.size(), 100.0f);
+    return image;
+}
+} // namespace
+
+TEST(Compare, EqualPicturesHaveNoError) {
+    const Difference d = compare(flat(9, 7, 0.3f), flat(9, 7, 0.3f));
+    EXPECT_EQ(d.mean_relative, 0.0);
+    EXPECT_EQ(d.psnr_db, std::numeric_limits<double>::infinity());
+}
+
+TEST(Compare, ATwoPercentShiftIsTwoPercent) {
+    const Difference d = compare(flat(10, 10, 0.51f), flat(10, 10, 0.5f));
+    EXPECT_NEAR(d.mean_relative, 0.02, 1e-6);
+    EXPECT_NEAR(d.p99_relative, 0.02, 1e-6);
+    EXPECT_NEAR(d.psnr_db, 20 * std::log10(50.0), 1e-4);
+}
+
+TEST(Compare, OneBrokenPixelIsFound) {
+    Image a = flat(100, 100, 0.5f);
+    a.radiance[1234] = glm::vec3(5.0f);
+    const Difference d = compare(a, flat(100, 100, 0.5f));
+    EXPECT_EQ(d.worst_pixel, 1234u);
+    EXPECT_NEAR(d.max_relative, 9.0, 1e-5);
+    EXPECT_NEAR(d.mean_relative, 9e-4, 1e-8);
+    a.radiance[7].g = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_FALSE(compare(a, flat(100, 100, 0.5f)).finite);
+    EXPECT_THROW(compare(a, flat(10, 100, 0.5f)), Error);
+}
+
+TEST(Compare, DistancesAreJudgedAwayFromEdges) {
+    Image a = flat(20, 20, 1.0f), b = a;
+    a.distance_m[205] += 0.5f; // (5, 10)
+    for (int y = 0; y < 20; ++y)
+        b.distance_m[std::size_t(y) * 20 + 15] = std::numeric_limits<float>::infinity(); // a line of sky
+    const DistanceDifference d = compare_distances(a, b, 0.01, 1e-5);
+    EXPECT_EQ(d.pixels, 400u);
+    EXPECT_EQ(d.edges, 60u);
+    EXPECT_EQ(d.different, 1u);
+    EXPECT_NEAR(d.worst_m, 0.5, 1e-6);
+}
+
+TEST(Tone, MidGreyStaysAndBlackAndWhiteAreEnds) {
+    Image image = flat(4, 4, 0.18f);
+    const int grey = tone_map(image, 1.0).bytes[0];
+    EXPECT_NEAR(grey, 255 * srgb_encode(0.18), 1.0);
+    EXPECT_EQ(tone_map(flat(4, 4, 0.0f), 1.0).bytes[5], 0);
+    EXPECT_GE(tone_map(flat(4, 4, 1e4f), 1.0).bytes[5], 254);
+    EXPECT_EQ(encode_linear(flat(1, 1, 1.0f)).bytes[0], 255);
+    // More light is never darker.
+    int last = 0;
+    for (float v = 0.0f; v < 8.0f; v += 0.05f) {
+        const Picture p = tone_map(flat(4, 4, v), 1.0);
+        int sum = 0;
+        for (const auto byte : p.bytes)
+            sum += byte;
+        EXPECT_GE(sum, last);
+        last = sum;
+    }
+}
+
+TEST(Tone, AutomaticExposureBringsTheMiddleToTheKey) {
+    EXPECT_NEAR(auto_exposure(flat(50, 50, 0.02f), 0.2, 0.0, 1e9), 10.0, 1e-3);
+    EXPECT_NEAR(auto_exposure(flat(50, 50, 0.02f), 0.2, 0.0, 4.0), 4.0, 1e-9);
+}
+
+TEST(Files, ExrKeepsEveryBitAndItsDistances) {
+    const TempFolder temp;
+    Image image = flat(33, 17, 0.0f);
+    for (std::size_t i = 0; i < image.radiance.size(); ++i) {
+        image.radiance[i] = {float(i) * 1.1f, 1e-7f * float(i), 3e4f};
+        image.distance_m[i] = i % 5 ? float(i) * 17.3f : std::numeric_limits<float>::infinity();
+    }
+    write_exr(temp / "a.exr", image, {{"tarn:level_m", "313.31"}});
+    const Image back = read_exr(temp / "a.exr");
+    EXPECT_EQ(back.radiance, image.radiance);
+    EXPECT_EQ(back.distance_m, image.distance_m);
+    EXPECT_EQ(read_metadata(temp / "a.exr").at("tarn:level_m"), "313.31");
+}
+
+TEST(Files, PngKeepsPixelsAndMetadataAndLeavesNothingElse) {
+    const TempFolder temp;
+    Picture p{.width_px = 64, .height_px = 40, .channels = 3};
+    for (int i = 0; i < 64 * 40 * 3; ++i)
+        p.bytes.push_back(std::uint8_t(i * 7));
+    write_png(temp / "a.png", p, {{"tarn:camera", "x=1,y=2"}});
+    const Picture back = read_rgba(temp / "a.png");
+    for (std::size_t i = 0; i < 64 * 40; ++i)
+        for (std::size_t k = 0; k < 3; ++k)
+            ASSERT_EQ(back.bytes[4 * i + k], p.bytes[3 * i + k]);
+    EXPECT_EQ(read_metadata(temp / "a.png").at("tarn:camera"), "x=1,y=2");
+    EXPECT_THROW(write_png(temp / "no/such/folder.png", p, {}), Error);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(temp.path()), {}), 1);
+    EXPECT_THROW(read_rgba(temp / "none.png"), Error);
+    EXPECT_THROW(read_codes(temp / "a.png"), Error);
+}
+
+TEST(Annotate, TextAndBarsChangeThePicture) {
+    Picture p{.width_px = 120, .height_px = 40, .channels = 3, .bytes = std::vector<std::uint8_t>(120 * 40 * 3, 90)};
+    fill_box(p, -5, 30, 60, 99, 255);
+    EXPECT_EQ(p.bytes[(35 * 120 + 10) * 3], 255);
+    EXPECT_EQ(p.bytes[(35 * 120 + 70) * 3], 90);
+    EXPECT_TRUE(draw_text(p, 5, 20, 14, "10 km")) << "fonts-dejavu-core is not installed";
+    EXPECT_GT(std::count_if(p.bytes.begin(), p.bytes.end(), [](int byte) { return byte > 180; }), 60 * 10 * 3 + 100);
+}

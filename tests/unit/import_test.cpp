@@ -1,0 +1,309 @@
+// The whole import on files: made ones with known answers, and the real ones where they are.
+#include "caldera.hpp"
+#include "core/error.hpp"
+#include "dem/import.hpp"
+#include "dem/write.hpp"
+#include "geo/frame.hpp"
+#include "support/files.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+using namespace tarn;
+using test_support::data;
+using test_support::TempFolder;
+
+namespace {
+
+/// A lake with a real bed in UTM 33N: z = 40 (r/500)^2, spacing 5 m.
+Grid<float> bowl(int side, double spacing, double shift_x = 0.0, double shift_y = 0.0) {
+    Grid<float> z({side, side});
+    const double half = 0.5 * (side - 1) * spacing;
+    for (int r = 0; r < side; ++r)
+        for (int c = 0; c < side; ++c) {
+            const double x = c * spacing - half + shift_x, y = half - r * spacing + shift_y;
+            z[{c, r}] = float(40.0 * (x * x + y * y) / 250'000.0);
+        }
+    return z;
+}
+
+void write(const std::filesystem::path& path, const Grid<float>& z, double east, double north, double spacing,
+           const std::string& crs = "EPSG:32633") {
+    const double t[6] = {east, spacing, 0, north, 0, -spacing};
+    dem::write_elevations(path, z, crs, t, "test");
+}
+
+const LakeRecord& only(const dem::ImportResult& result) {
+    EXPECT_EQ(result.lakes.size(), 1u);
+    return result.lakes.front();
+}
+
+} // namespace
+
+TEST(Import, AMetricTransverseMercatorGridIsKeptNodeForNode) {
+    const TempFolder folder;
+    const Grid<float> z = bowl(201, 5.0);
+    write(folder / "bowl.tif", z, 500'000, 5'300'000, 5.0);
+    const auto result = dem::import_dem({.dems = {folder / "bowl.tif"}, .level_m = 10.0}, {});
+    EXPECT_EQ(result.report.resampling, "none");
+    ASSERT_EQ(result.ground.size(), z.size);
+    for (std::size_t i = 0; i < z.values.size(); ++i) { // within half a code; a shore node one more
+        const double got = result.ground.offset_m + result.ground.scale_m * result.ground.codes.values[i];
+        ASSERT_NEAR(got, z.values[i], 1.01 * result.ground.scale_m);
+    }
+    // Node (0, 0) is the centre of the north-west pixel.
+    EXPECT_DOUBLE_EQ(result.frame.origin_easting_m + result.ground.west_m, 500'002.5);
+    EXPECT_DOUBLE_EQ(result.frame.origin_northing_m + result.ground.north_m, 5'299'997.5);
+    EXPECT_NEAR(only(result).area_m2, M_PI * 250 * 250, 0.005 * M_PI * 250 * 250);
+    EXPECT_NEAR(*only(result).volume_m3, M_PI * 250 * 250 * 5, 0.005 * M_PI * 250 * 250 * 5);
+}
+
+TEST(Import, TilesInPhaseAreJoinedWithoutResampling) {
+    const TempFolder folder;
+    const Grid<float> whole = bowl(200, 5.0);
+    for (int k = 0; k < 4; ++k) {
+        Grid<float> part({100, 100});
+        for (int r = 0; r < 100; ++r)
+            for (int c = 0; c < 100; ++c)
+                part[{c, r}] = whole[{c + (k % 2) * 100, r + (k / 2) * 100}];
+        write(folder / ("t" + std::to_string(k) + ".tif"), part, 500'000 + (k % 2) * 500.0,
+              5'300'000 - (k / 2) * 500.0, 5.0);
+    }
+    const auto tiles = dem::import_dem({.dems = {folder / "t3.tif", folder / "t0.tif", folder / "t2.tif",
+                                                 folder / "t1.tif"}, .level_m = 10.0}, {});
+    write(folder / "whole.tif", whole, 500'000, 5'300'000, 5.0);
+    const auto one = dem::import_dem({.dems = {folder / "whole.tif"}, .level_m = 10.0}, {});
+    EXPECT_EQ(tiles.report.resampling, "none");
+    EXPECT_EQ(tiles.ground.codes.values, one.ground.codes.values);
+    EXPECT_EQ(tiles.ground.west_m, one.ground.west_m);
+    EXPECT_EQ(tiles.ground.north_m, one.ground.north_m);
+}
+
+TEST(Import, AGeographicGridIsWarpedAndLandsInItsPlace) {
+    // A conical pit at 46 N 9 E, given in degrees: z = .2 of the distance from its middle.
+    const TempFolder folder;
+    const double step = 1.0 / 3600;
+    Grid<float> z({240, 240});
+    const GeoPoint middle{46.0, 9.0};
+    const geo::Frame local = geo::local_frame(middle);
+    for (int r = 0; r < 240; ++r)
+        for (int c = 0; c < 240; ++c) {
+            const ScenePoint p = geo::to_scene(local, {46.0 + (119.5 - r) * step, 9.0 + (c - 119.5) * step});
+            z[{c, r}] = float(0.2 * std::hypot(p.x_m, p.y_m));
+        }
+    write(folder / "pit.tif", z, 9.0 - 120 * step, 46.0 + 120 * step, step, "EPSG:4326");
+    const auto result = dem::import_dem({.dems = {folder / "pit.tif"}, .level_m = 200.0}, {});
+    EXPECT_NE(result.report.resampling, "none");
+    EXPECT_NEAR(only(result).area_m2, M_PI * 1e6, 0.004 * M_PI * 1e6); // radius 1000 m
+    // The tip falls between the source's cells: its lowest one stands .2 x half a diagonal higher.
+    EXPECT_NEAR(*only(result).max_depth_m, 200.0, 0.2 * 0.5 * std::hypot(30.9, 21.5) + 0.5);
+    EXPECT_NEAR(only(result).position.lat_deg, 46.0, 5e-4);
+    EXPECT_NEAR(only(result).position.lon_deg, 9.0, 5e-4);
+    EXPECT_NEAR(only(result).true_area_m2, M_PI * 1e6, 0.004 * M_PI * 1e6);
+    // Heights where the source says they are: on the slope, within the source's own resolution.
+    for (const double x : {-1500.0, 700.0, 1800.0}) {
+        const ScenePoint p = geo::to_scene(result.frame, geo::to_geo(local, {x, 0.4 * x}));
+        EXPECT_NEAR(result.ground.elevation_m(p.x_m, p.y_m), 0.2 * std::hypot(x, 0.4 * x), 1.0);
+    }
+}
+
+TEST(Import, FeetAndBandScalesBecomeMetres) {
+    const TempFolder folder;
+    Grid<float> z = bowl(101, 10.0);
+    for (float& v : z.values)
+        v = v / 0.3048f;
+    write(folder / "feet.tif", z, 500'000, 5'300'000, 10.0);
+    {
+        dem::register_drivers();
+        dem::Dataset ds(GDALDataset::Open((folder / "feet.tif").c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+        ds->GetRasterBand(1)->SetUnitType("ft");
+    }
+    const auto result = dem::import_dem({.dems = {folder / "feet.tif"}, .level_m = 10.0}, {});
+    EXPECT_NEAR(*only(result).volume_m3, M_PI * 250 * 250 * 5, 0.01 * M_PI * 250 * 250 * 5);
+    ASSERT_FALSE(result.report.notes.empty());
+    EXPECT_NE(result.report.notes.front().find("turned into metres"), std::string::npos);
+}
+
+TEST(Import, BoundsAndRadiusCutTheScene) {
+    const TempFolder folder;
+    write(folder / "bowl.tif", bowl(401, 5.0), 500'000, 5'300'000, 5.0);
+    const geo::Frame utm = dem::import_dem({.dems = {folder / "bowl.tif"}, .level_m = 10.0}, {}).frame;
+    const GeoPoint middle = geo::to_geo(utm, {0, 0});
+    const auto cut = dem::import_dem({.dems = {folder / "bowl.tif"}, .level_m = 10.0, .at = middle, .radius_km = 0.4}, {});
+    EXPECT_NEAR(cut.ground.size().cols * 5.0, 800.0, 20.0);
+    EXPECT_NEAR(cut.ground.size().rows * 5.0, 800.0, 20.0);
+    EXPECT_NEAR(only(cut).area_m2, M_PI * 250 * 250, 0.01 * M_PI * 250 * 250);
+    EXPECT_FALSE(only(cut).open_at_edge);
+    const auto tight = dem::import_dem({.dems = {folder / "bowl.tif"}, .level_m = 10.0, .at = middle, .radius_km = 0.2}, {});
+    EXPECT_TRUE(only(tight).open_at_edge);
+}
+
+TEST(Import, BadInputGetsOneClearLine) {
+    const TempFolder folder;
+    write(folder / "bowl.tif", bowl(51, 20.0), 500'000, 5'300'000, 20.0);
+    const auto says = [](const dem::ImportOptions& options) -> std::string {
+        try {
+            dem::import_dem(options, {});
+            return "no error";
+        } catch (const Error& error) {
+            return error.what();
+        }
+    };
+    const auto bowl_tif = folder / "bowl.tif";
+    const auto has = [&](const dem::ImportOptions& options, const std::string& words) {
+        const std::string said = says(options);
+        EXPECT_NE(said.find(words), std::string::npos) << said;
+        EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+    };
+    has({.dems = {}}, "no elevation data");
+    has({.dems = {folder / "none.tif"}, .level_m = 1.0}, "no such file");
+    std::ofstream(folder / "text.tif") << "this is no raster";
+    has({.dems = {folder / "text.tif"}, .level_m = 1.0}, "GDAL cannot read it");
+    std::ofstream(folder / "empty.tif") << "";
+    has({.dems = {folder / "empty.tif"}, .level_m = 1.0}, "GDAL cannot read it");
+    const std::string bytes = test_support::read_file(bowl_tif);
+    std::ofstream(folder / "cut.tif", std::ios::binary) << bytes.substr(0, bytes.size() / 2);
+    has({.dems = {folder / "cut.tif"}, .level_m = 1.0}, "cut.tif");
+    has({.dems = {bowl_tif}, .level_m = -5.0}, "nothing lies below the level");
+    has({.dems = {bowl_tif}, .level_m = NAN}, "--level");
+    has({.dems = {bowl_tif}}, "no flat water surface");
+    has({.dems = {bowl_tif}, .level_m = 10.0, .at = GeoPoint{0, 0}}, "outside the elevation data");
+    has({.dems = {bowl_tif}, .level_m = 10.0, .radius_km = 3.0}, "--radius needs a centre");
+    has({.dems = {bowl_tif}, .level_m = 10.0, .bounds = dem::Bounds{1, 1, 0, 0}}, "--bounds must be");
+    has({.dems = {bowl_tif}, .level_m = 10.0, .bounds = dem::Bounds{-60, -60, -59, -59}}, "lies outside");
+    has({.dems = {bowl_tif}, .level_m = 10.0, .spacing_m = 0.0}, "--spacing");
+    has({.dems = {bowl_tif}, .level_m = 10.0, .spacing_m = 0.01}, "nodes, more than 16384");
+    has({.dems = {bowl_tif}, .level_m = 10.0, .crs = "EPSG:nonsense"}, "--crs");
+    has({.dems = {bowl_tif}, .level_m = 10.0, .crs = "EPSG:4326"}, "look like metres");
+    has({.dems = {bowl_tif}, .level_m = 10.0, .bathymetry = folder / "none.tif"}, "no such file");
+    write(folder / "plane.tif", Grid<float>({20, 20}, NAN), 500'000, 5'300'000, 20.0);
+    has({.dems = {folder / "plane.tif"}, .level_m = 10.0}, "no elevation data in this region");
+    {
+        const double t[6] = {0, 1, 0, 0, 0, -1};
+        dem::write_elevations(folder / "nocrs.tif", bowl(11, 5.0), "LOCAL_CS[\"nowhere\"]", t, "");
+        has({.dems = {folder / "nocrs.tif"}, .level_m = 10.0}, "give one with --crs");
+    }
+    int calls = 0;
+    EXPECT_THROW(dem::import_dem({.dems = {bowl_tif}, .level_m = 10.0},
+                                 Progress([&](double, const std::string&) { return ++calls < 3; })),
+                 Cancelled);
+}
+
+TEST(Samples, TheCalderaMeetsThePublishedFiguresWithinOnePercent) {
+    const TempFolder folder;
+    const auto c = samples::make_caldera(25.0);
+    const double t[6] = {c.west_m, 25, 0, c.north_m, 0, -25};
+    dem::write_elevations(folder / "caldera.tif", c.elevation_m, "EPSG:32610", t, "");
+    const auto result = dem::import_dem({.dems = {folder / "caldera.tif"}, .level_m = 1883.0}, {});
+    const LakeRecord& lake = only(result);
+    EXPECT_NEAR(lake.area_m2, 53.0e6, 0.01 * 53.0e6);
+    EXPECT_NEAR(*lake.volume_m3, 18.7e9, 0.01 * 18.7e9);
+    EXPECT_NEAR(*lake.max_depth_m, 594.0, 5.94);
+    EXPECT_EQ(lake.islands, 1);
+    EXPECT_EQ(lake.bed, Bed::measured);
+    EXPECT_LT(geo::geodesic_distance_m(lake.position, {42.9446, -122.1090}), 3000.0);
+    // Wizard Island: summit height, and its area from the hole in the lake.
+    EXPECT_NEAR(result.ground.max_elevation_m(), 2721.0, 27.0); // Mount Scott
+    double island = 0.0, summit = 0.0;
+    const geo::Frame& frame = result.frame;
+    const ScenePoint wizard = geo::to_scene(frame, {42.9380, -122.1460});
+    for (double x = -1500; x <= 1500; x += 25)
+        for (double y = -1500; y <= 1500; y += 25) {
+            const double z = result.ground.elevation_m(wizard.x_m + x, wizard.y_m + y);
+            if (z > 1883.0 && std::hypot(x, y) < 1100) {
+                island += 625;
+                summit = std::max(summit, z);
+            }
+        }
+    EXPECT_NEAR(summit, 2113.0, 21.0);
+    EXPECT_NEAR(island, 1.28e6, 0.15e6);
+}
+
+// --- real data ------------------------------------------------------------------------------------
+
+TEST(RealData, RotomaHasItsAreaVolumeAndDepth) {
+    TARN_NEEDS_DATA("rotoma/rotoma_topobathy_32m.tif");
+    const auto result = dem::import_dem({.dems = {data("rotoma/rotoma_topobathy_32m.tif")}, .level_m = 313.31}, {});
+    EXPECT_EQ(result.report.resampling, "none");
+    EXPECT_NEAR(only(result).area_m2, 11.140e6, 0.001 * 11.140e6);
+    EXPECT_NEAR(*only(result).volume_m3, 0.4361e9, 0.001 * 0.4361e9);
+    EXPECT_NEAR(*only(result).max_depth_m, 80.5, 0.0805);
+    EXPECT_FALSE(only(result).open_at_edge);
+    EXPECT_EQ(result.frame.vertical_datum, "NZVD2016 height");
+}
+
+TEST(RealData, PleasantLakeMeetsItsPublishedStageTable) {
+    TARN_NEEDS_DATA("pleasant_wi/pleasant_topobathy.tif");
+    struct Row {
+        double level, area, volume;
+    };
+    for (const Row row : {Row{299.0544, 552'830.5, 2'737'258.0}, Row{295.5622392, 365'964.3758, 1'138'486.99},
+                          Row{299.9232, 579'137.5712, 3'229'245.23}}) {
+        const auto result = dem::import_dem({.dems = {data("pleasant_wi/pleasant_topobathy.tif")}, .level_m = row.level}, {});
+        EXPECT_EQ(result.report.resampling, "none");
+        EXPECT_NEAR(only(result).area_m2 / row.area, 1.0, 1e-3) << row.level;
+        EXPECT_NEAR(*only(result).volume_m3 / row.volume, 1.0, 1e-3) << row.level;
+    }
+}
+
+TEST(RealData, CraterLakeFromTwoTilesOutOfPhase) {
+    TARN_NEEDS_DATA("crater_lake/ned_n43w123.tif");
+    const std::vector<std::filesystem::path> tiles = {data("crater_lake/ned_n43w124.tif"), data("crater_lake/ned_n43w123.tif")};
+    const auto given = dem::import_dem({.dems = tiles, .level_m = 1882.01}, {});
+    EXPECT_NEAR(only(given).area_m2, 53.3e6, 0.005 * 53.3e6);
+    EXPECT_EQ(only(given).bed, Bed::unknown);
+    EXPECT_FALSE(only(given).volume_m3.has_value());
+    const auto found = dem::import_dem({.dems = tiles}, {});
+    EXPECT_NEAR(only(found).level_m, 1882.01, 0.005);
+    EXPECT_NEAR(only(found).area_m2, 53.3e6, 0.005 * 53.3e6);
+}
+
+TEST(RealData, LakesAreFoundAtTheirSeedsWithTheirLevels) {
+    struct Lake {
+        std::vector<const char*> files;
+        GeoPoint at;
+        double level, area_km2, tolerance;
+    };
+    // Areas as computed from the files (data/README.md); SRTM shores differ by connection rules.
+    const std::vector<Lake> lakes = {
+        {{"sainte_croix/N43E006.hgt", "sainte_croix/N43E007.hgt.zip"}, {43.766, 6.184}, 470, 18.8, 0.02},
+        {{"sainte_croix/N43E006.hgt"}, {43.907, 6.532}, 867, 3.26, 0.03},
+        {{"fuji_five_lakes/fuji_srtm_90m.tif"}, {35.419, 138.874}, 984, 6.61, 0.02},
+        {{"fuji_five_lakes/fuji_srtm_90m.tif"}, {35.513, 138.748}, 829, 5.23, 0.03},
+        {{"fuji_five_lakes/fuji_srtm_90m.tif"}, {35.464, 138.585}, 896, 4.48, 0.03},
+        {{"fuji_five_lakes/fuji_srtm_90m.tif"}, {35.499, 138.685}, 899, 2.02, 0.03},
+        {{"thirlmere/thirlmere_eudem.tif"}, {54.5470, -3.0706}, 179.65, 3.29, 0.01},
+        {{"ozarks/ozarks_srtm_30m.tif"}, {38.2068, -92.7595}, 202, 133.5, 0.01},
+        {{"rotoma/rotoma_dem_32m.tif"}, {-38.0454, 176.5858}, 313.30, 10.50, 0.01}, // 10252 nodes at 313.30
+    };
+    for (const Lake& lake : lakes) {
+        dem::ImportOptions options{.at = lake.at};
+        for (const char* file : lake.files) {
+            TARN_NEEDS_DATA(file);
+            options.dems.push_back(data(file));
+        }
+        const auto result = dem::import_dem(options, {});
+        EXPECT_NEAR(only(result).level_m, lake.level, 0.01) << lake.files[0];
+        EXPECT_NEAR(only(result).area_m2 / 1e6 / lake.area_km2, 1.0, lake.tolerance) << lake.files[0] << " " << lake.level;
+        EXPECT_EQ(only(result).bed, Bed::unknown) << lake.files[0];
+    }
+}
+
+TEST(RealData, AZipWithoutCrsIsRefusedAndTakenWithOne) {
+    TARN_NEEDS_DATA("osgb_asc/osgb_dsm_2m_tiles.zip");
+    dem::ImportOptions options{.dems = {data("osgb_asc/osgb_dsm_2m_tiles.zip")}, .level_m = 55.0};
+    try {
+        dem::import_dem(options, {});
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("so2316_dsm_2m.asc: no CRS; give one with --crs"), std::string::npos)
+            << error.what();
+    }
+    options.crs = "EPSG:27700";
+    options.at = GeoPoint{51.8383, -3.1120}; // in tile so2316, beside the Usk
+    options.radius_km = 0.4;
+    options.level_m = 70.0;
+    const auto result = dem::import_dem(options, {});
+    EXPECT_EQ(result.report.resampling, "none");
+    EXPECT_DOUBLE_EQ(result.ground.spacing_m, 2.0);
+}
