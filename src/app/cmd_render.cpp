@@ -158,7 +158,12 @@ void add_render(CLI::App& app, Run& run) {
               "  tarn render rotoma --camera lat=-38.05,lon=176.58,above_water=30,heading=40,pitch=-10 -o a.png\n"
               "  tarn render tank --ground-albedo 0.5 --sky-radiance 0 --sun-direction 1,0,1 \\\n"
               "      --sun-irradiance 3.14159 --absorption-per-m 0 --backscattering-per-m 0 -o tank.exr");
-    c->callback([words, &run] { run = [words] { return run_render(*words); }; });
+    c->callback([words, c, &run] {
+        run = [words, c] {
+            apply_settings_file(*c, words->view);
+            return run_render(*words);
+        };
+    });
 }
 
 } // namespace tarn::app

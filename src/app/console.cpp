@@ -8,6 +8,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <unistd.h>
 
 namespace tarn::app {
@@ -17,8 +18,13 @@ namespace {
 std::atomic<bool> stop_asked{false};
 bool bar_shown = false;
 
+volatile std::time_t first_asked = 0;
+
 extern "C" void on_interrupt(int signal_number) {
-    if (stop_asked.exchange(true)) { // the second time: at once
+    const std::time_t now = std::time(nullptr); // one of the few calls that a handler may make
+    if (!stop_asked.exchange(true)) {
+        first_asked = now;
+    } else if (now - first_asked >= 2) { // asked again, not told twice at once by the terminal
         std::signal(signal_number, SIG_DFL);
         std::raise(signal_number);
     }

@@ -9,7 +9,8 @@
 
 namespace tarn::app {
 
-/// From here on Ctrl-C and SIGTERM ask running work to stop; a second one ends the program.
+/// From here on Ctrl-C and SIGTERM ask running work to stop; again two seconds later, they end the
+/// program.
 void catch_interrupts();
 
 /// A bar on stderr if that is a terminal, silence in a pipe; stops work after Ctrl-C.

@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <glm/geometric.hpp>
 #include <map>
 
@@ -150,8 +151,33 @@ void add_view_options(CLI::App& c, ViewWords& w) {
     c.add_flag("--no-reflection", w.no_reflection, "leave out what the water mirrors");
     c.add_flag("--no-refraction", w.no_refraction, "leave out what is seen through the surface");
     c.add_flag("--no-sun-disc", w.no_sun_disc, "leave out the sun itself");
-    c.set_config("--settings", "", "file with any of these options, one name=value a line");
-    c.allow_config_extras(CLI::config_extras_mode::error); // a misspelt name must not pass in silence
+    c.add_option("--settings", w.settings_file, "file with any of these options, one name = value a line");
+}
+
+void apply_settings_file(CLI::App& c, const ViewWords& w) {
+    if (w.settings_file.empty())
+        return;
+    std::ifstream in(w.settings_file);
+    if (!in)
+        throw Error(w.settings_file + ": cannot be read", "check the path given with --settings");
+    try {
+        CLI::ConfigTOML format;
+        format.arrayDelimiter('|'); // commas belong to the values
+        for (const CLI::ConfigItem& item : format.from_config(in)) {
+            if (item.name == "++" || item.name == "--")
+                continue; // marks of sections
+            CLI::Option* option = c.get_option_no_throw("--" + item.name);
+            if (!option || item.name == "settings" || item.name == "help" || !item.parents.empty())
+                throw Error(w.settings_file + ": no option is called '" + item.fullname() + "'",
+                            "the names are those of tarn render --help, without the dashes");
+            if (option->count() > 0)
+                continue; // what is typed wins
+            option->add_result(item.inputs);
+            option->run_callback();
+        }
+    } catch (const CLI::Error& error) {
+        throw Error(w.settings_file + ": " + error.what(), "write one name = value a line");
+    }
 }
 
 scene::View make_view(const ViewWords& w, scene::Scene& scene) {

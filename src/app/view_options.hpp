@@ -16,10 +16,15 @@ struct ViewWords {
     std::string fresnel = "exact";
     bool no_shadows = false, no_reflection = false, no_refraction = false, no_sun_disc = false;
     scene::RenderSettings settings;
+    std::string settings_file;
 };
 
 /// Adds these options to a command, and --settings FILE that reads them.
 void add_view_options(CLI::App& command, ViewWords& words);
+
+/// Takes from the file named by --settings what was not typed.
+/// @throws tarn::Error  naming the file and the line's name, if that is no option or has a bad value
+void apply_settings_file(CLI::App& command, const ViewWords& words);
 
 /// The view that the words ask for. Water optics given by hand are put into the scene.
 /// @throws tarn::Error  naming the option and what is wrong

@@ -3,8 +3,10 @@
 #include "core/error.hpp"
 #include "core/text.hpp"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <atomic>
+#include <fstream>
 #include <limits>
 #include <unistd.h>
 
@@ -35,23 +37,26 @@ void write_beside(const fs::path& path, Write write) {
     }
 }
 
+/// Encodes in memory and writes the bytes itself: the PNG writer does not notice a full disk.
 void write_image(const fs::path& path, OIIO::ImageSpec spec, OIIO::TypeDesc type, const void* data,
                  const Metadata& metadata) {
     for (const auto& [key, value] : metadata)
         spec.attribute(key, value);
-    const auto fail = [&](const std::string& why) {
-        return Error(path.parent_path().empty() ? "cannot write the picture (" + why + ")"
-                                                : "cannot write into " + path.parent_path().string() +
-                                                      " (" + why + ")",
-                     "check the folder, its permissions and the free space");
-    };
     auto out = OIIO::ImageOutput::create(path.string());
-    if (!out)
-        throw fail(OIIO::geterror());
-    if (!out->open(path.string(), spec))
-        throw fail(out->geterror());
-    if (!out->write_image(type, data) || !out->close())
-        throw fail(out->geterror());
+    OIIO::Filesystem::IOVecOutput encoded;
+    if (!out || !out->set_ioproxy(&encoded) || !out->open(path.string(), spec) ||
+        !out->write_image(type, data) || !out->close())
+        throw Error("the picture cannot be encoded (" + (out ? out->geterror() : OIIO::geterror()) + ")",
+                    "choose a smaller picture");
+    std::ofstream file(path, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(encoded.buffer().data()),
+               static_cast<std::streamsize>(encoded.buffer().size()));
+    file.close();
+    if (!file) {
+        const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+        throw Error("cannot write into " + folder.string(),
+                    "check the folder, its permissions and the free space");
+    }
 }
 
 std::unique_ptr<OIIO::ImageInput> open(const fs::path& path) {

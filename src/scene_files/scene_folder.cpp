@@ -5,13 +5,13 @@
 #include "image/files.hpp"
 #include "scene_files/scene_json.hpp"
 
-#include <cstring>
 #include <fcntl.h>
 #include <fstream>
 #include <iterator>
-#include <signal.h>
 #include <stdio.h>
+#include <sys/file.h>
 #include <unistd.h>
+#include <vector>
 
 namespace tarn::scene_files {
 
@@ -37,17 +37,28 @@ bool is_scene(const fs::path& folder) {
     return fs::is_regular_file(folder / "scene.json", failed);
 }
 
-/// What crashed imports of this name left behind: "<.name.partial-PID>" of processes that are gone.
+/// A running import holds a lock on its folder; the system drops it however the process ends.
+int lock(const fs::path& folder) {
+    const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (handle >= 0 && ::flock(handle, LOCK_EX | LOCK_NB) != 0) {
+        ::close(handle);
+        return -1;
+    }
+    return handle;
+}
+
+/// Removes what crashed imports of this name left behind.
 void sweep(const fs::path& parent, const std::string& prefix) {
     std::error_code failed;
-    for (const auto& entry : fs::directory_iterator(parent, failed)) {
-        const std::string name = entry.path().filename().string();
-        if (!name.starts_with(prefix))
-            continue;
-        const long pid = std::strtol(name.c_str() + prefix.size(), nullptr, 10);
-        if (pid > 0 && pid != ::getpid() && ::kill(pid_t(pid), 0) != 0 && errno == ESRCH)
-            fs::remove_all(entry.path(), failed);
-    }
+    std::vector<fs::path> remains;
+    for (const auto& entry : fs::directory_iterator(parent, failed))
+        if (entry.path().filename().string().starts_with(prefix))
+            remains.push_back(entry.path());
+    for (const fs::path& folder : remains)
+        if (const int handle = lock(folder); handle >= 0) {
+            fs::remove_all(folder, failed);
+            ::close(handle);
+        }
 }
 
 } // namespace
@@ -110,12 +121,15 @@ StagedFolder::StagedFolder(const fs::path& target) : target_(target.lexically_no
     if (!fs::create_directory(partial_, failed))
         throw Error(parent.string() + ": cannot be written (" + failed.message() + ")",
                     "check the folder and its permissions");
+    lock_ = lock(partial_);
 }
 
 StagedFolder::~StagedFolder() {
     std::error_code ignored;
     if (!done_)
         fs::remove_all(partial_, ignored);
+    if (lock_ >= 0)
+        ::close(lock_);
 }
 
 void StagedFolder::write_text(const std::string& name, const std::string& content) const {

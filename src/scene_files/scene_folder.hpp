@@ -28,6 +28,7 @@ public:
 private:
     std::filesystem::path target_, partial_;
     bool done_ = false;
+    int lock_ = -1; ///< tells other imports that this one is alive
 };
 
 } // namespace tarn::scene_files

@@ -154,7 +154,7 @@ TEST(Render, WritesPicturesThatSayWhereTheyAreFrom) {
     }
     const Picture p = image::read_rgba(t / "a.png");
     EXPECT_EQ(p.width_px, 160);
-    // Sky above and water below: the top is bluish and brighter than the bottom.
+    // Sky above and water below.
     const auto row = [&](int y) {
         double sum[3] = {};
         for (int x = 0; x < 160; ++x)
@@ -163,7 +163,7 @@ TEST(Render, WritesPicturesThatSayWhereTheyAreFrom) {
         return glm::dvec3(sum[0], sum[1], sum[2]);
     };
     EXPECT_GT(row(5).b, row(5).r);
-    EXPECT_GT(row(5).g, row(110).g);
+    EXPECT_GT(row(110).g, row(110).r); // the water has taken the red
     // The camera in the metadata gives the same picture again.
     const auto m = image::read_metadata(t / "a.exr");
     ASSERT_EQ(run("tarn render " + shared().scene + " --size 160x120 --samples 1 --camera " + m.at("tarn:camera") +
@@ -203,9 +203,15 @@ TEST(Render, ASettingsFileMeansTheSameAsTheOptions) {
     const Outcome a = run("tarn render " + shared().scene + " --settings " + (t / "lab.toml").string() + " -o " + (t / "a.exr").string());
     ASSERT_EQ(a.code, 0) << a.err;
     ASSERT_EQ(run("tarn render " + shared().scene + " " + typed + " -o " + (t / "b.exr").string()).code, 0);
-    EXPECT_EQ(image::read_exr(t / "a.exr").radiance, image::read_exr(t / "b.exr").radiance);
+    EXPECT_TRUE(image::read_exr(t / "a.exr").radiance == image::read_exr(t / "b.exr").radiance);
     std::ofstream(t / "wrong.toml") << "ground-albebo = 0.5\n";
-    EXPECT_EQ(run("tarn render " + shared().scene + " --settings " + (t / "wrong.toml").string() + " -o " + (t / "c.exr").string()).code, 2);
+    expect_one_line("tarn render " + shared().scene + " --settings " + (t / "wrong.toml").string() + " -o " + (t / "c.exr").string(),
+                    1, "wrong.toml: no option is called 'ground-albebo'");
+    expect_one_line("tarn render " + shared().scene + " --settings " + (t / "none.toml").string() + " -o " + (t / "c.exr").string(),
+                    1, "none.toml: cannot be read");
+    // What is typed wins over the file.
+    ASSERT_EQ(run("tarn render " + shared().scene + " --settings " + (t / "lab.toml").string() + " --size 32x24 -o " + (t / "d.exr").string()).code, 0);
+    EXPECT_EQ(image::read_exr(t / "d.exr").width_px, 32);
 }
 
 TEST(Render, ReferenceGivesTheSamePictureAndPrintsTheDifference) {
@@ -262,10 +268,10 @@ TEST(Import, AFailureLeavesNoHalfSceneAndKeepsTheOlderOne) {
                              " --level 12 -o " + scene + "\"");
     EXPECT_EQ(full.code, 1);
     EXPECT_EQ(lines(full.err), 1) << full.err;
-    EXPECT_EQ(test_support::read_file(t / "s/scene.json"), before);
+    EXPECT_TRUE(test_support::read_file(t / "s/scene.json") == before);
     EXPECT_EQ(std::distance(fs::directory_iterator(t.path()), {}), 1) << "something was left behind";
     EXPECT_EQ(run("tarn import " + shared().dem + " --level 12 -o " + scene).code, 0);
-    EXPECT_NE(test_support::read_file(t / "s/scene.json"), before);
+    EXPECT_TRUE(test_support::read_file(t / "s/scene.json") != before);
     EXPECT_EQ(std::distance(fs::directory_iterator(t.path()), {}), 1);
 }
 
