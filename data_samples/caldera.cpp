@@ -13,7 +13,8 @@ constexpr double pi = 3.14159265358979323846;
 /// Value noise with slope-continuous ramps: the roughness that no published figure gives.
 double noise(double x, double y, std::uint32_t seed) {
     const auto value = [seed](long i, long j) {
-        std::uint32_t h = std::uint32_t(i) * 0x9e3779b1u ^ std::uint32_t(j) * 0x85ebca77u ^ seed * 0xc2b2ae3du;
+        std::uint32_t h =
+            std::uint32_t(i) * 0x9e3779b1u ^ std::uint32_t(j) * 0x85ebca77u ^ seed * 0xc2b2ae3du;
         h = (h ^ (h >> 15)) * 0x2c1b3c6du;
         h = (h ^ (h >> 12)) * 0x297a2d39u;
         return double((h ^ (h >> 15)) >> 8) / 16777216.0;
@@ -30,7 +31,8 @@ double rough(double x, double y, double wavelength, int octaves, std::uint32_t s
     double sum = 0.0, amplitude = 1.0;
     for (int k = 0; k < octaves; ++k) {
         const double c = std::cos(0.7 * (k + 1)), s = std::sin(0.7 * (k + 1));
-        sum += amplitude * noise((c * x - s * y) / wavelength, (s * x + c * y) / wavelength, seed + std::uint32_t(k));
+        sum += amplitude * noise((c * x - s * y) / wavelength, (s * x + c * y) / wavelength,
+                                 seed + std::uint32_t(k));
         amplitude *= 0.5;
         wavelength *= 0.5;
     }
@@ -77,8 +79,10 @@ double elevation(double x, double y, const Shape& shape) {
     double z = 0.0;
     if (share < 1.0) {
         // Steep walls, flat floor; the greatest depth lies in the north-east.
-        const double lean = 1.0 - 0.10 * (1.0 - std::clamp(std::hypot(x - 1500.0, y - 1300.0) / 4500.0, 0.0, 1.0));
-        z = caldera_level_m - caldera_depth_m * (1.0 - std::pow(share, shape.profile)) / lean * 0.93;
+        const double lean =
+            1.0 - 0.10 * (1.0 - std::clamp(std::hypot(x - 1500.0, y - 1300.0) / 4500.0, 0.0, 1.0));
+        z = caldera_level_m -
+            caldera_depth_m * (1.0 - std::pow(share, shape.profile)) / lean * 0.93;
         z += 22.0 * rough(x, y, 1800.0, 5, 3u) * std::clamp((1.0 - share) * 6.0, 0.0, 1.0);
     } else {
         const double up = r - shore;
@@ -87,8 +91,10 @@ double elevation(double x, double y, const Shape& shape) {
         const double reach = (rim - caldera_level_m) / wall;
         if (up < reach) {
             const double f = up / reach;
-            const double gullies = 26.0 * rough(x, y, 420.0, 5, 60u) * std::sin(pi * std::min(1.0, f));
-            z = caldera_level_m + 1.0 + (rim - caldera_level_m - 1.0) * std::pow(f, 0.9) + gullies * std::min(1.0, up / 150.0);
+            const double gullies =
+                26.0 * rough(x, y, 420.0, 5, 60u) * std::sin(pi * std::min(1.0, f));
+            z = caldera_level_m + 1.0 + (rim - caldera_level_m - 1.0) * std::pow(f, 0.9) +
+                gullies * std::min(1.0, up / 150.0);
             z = std::max(z, caldera_level_m + 0.02 * up + 0.2);
         } else {
             const double out = up - reach;
@@ -98,12 +104,15 @@ double elevation(double x, double y, const Shape& shape) {
     }
     // Mount Scott, a cone east of the rim.
     const double scott = std::hypot(x - 7700.0, y + 1600.0);
-    z = std::max(z, 2721.0 - 0.42 * scott + 30.0 * rough(x, y, 600.0, 4, 21u) * std::min(1.0, scott / 300.0));
+    z = std::max(z, 2721.0 - 0.42 * scott +
+                        30.0 * rough(x, y, 600.0, 4, 21u) * std::min(1.0, scott / 300.0));
     // Wizard Island: a cinder cone on an apron of lava.
     const double wizard = std::hypot(x + 3050.0, y + 650.0);
-    const double coast = 638.0 * (1.0 + 0.12 * std::cos(3.0 * std::atan2(y + 650.0, x + 3050.0) + 1.0));
-    const double apron = caldera_level_m + 16.0 * (1.0 - std::pow(wizard / coast, 2.0)) +
-                         5.0 * rough(x, y, 260.0, 4, 33u) * std::clamp(1.0 - wizard / coast, 0.0, 1.0);
+    const double coast =
+        638.0 * (1.0 + 0.12 * std::cos(3.0 * std::atan2(y + 650.0, x + 3050.0) + 1.0));
+    const double apron =
+        caldera_level_m + 16.0 * (1.0 - std::pow(wizard / coast, 2.0)) +
+        5.0 * rough(x, y, 260.0, 4, 33u) * std::clamp(1.0 - wizard / coast, 0.0, 1.0);
     const double crater = 27.0 * std::exp(-std::pow(wizard / 60.0, 2.0));
     const double cone = 2113.0 - 0.60 * std::max(0.0, wizard - 95.0) - crater;
     return std::max({z, apron, cone});
@@ -114,7 +123,8 @@ Grid<float> build(const Shape& shape, double spacing, int side) {
     const double half = 0.5 * (side - 1) * spacing;
     for (int row = 0; row < side; ++row)
         for (int col = 0; col < side; ++col)
-            z[{col, row}] = static_cast<float>(elevation(col * spacing - half, half - row * spacing, shape));
+            z[{col, row}] =
+                static_cast<float>(elevation(col * spacing - half, half - row * spacing, shape));
     return z;
 }
 
@@ -157,7 +167,8 @@ Caldera make_caldera(double spacing_m) {
             if (z < caldera_level_m)
                 z = static_cast<float>(caldera_level_m - (caldera_level_m - z) * press);
         measure(out);
-        const double area = out.area_m2 / caldera_area_m2, volume = out.volume_m3 / caldera_volume_m3;
+        const double area = out.area_m2 / caldera_area_m2,
+                     volume = out.volume_m3 / caldera_volume_m3;
         if (std::abs(area - 1.0) < 1e-3 && std::abs(volume - 1.0) < 1e-3)
             break;
         shape.radius_m /= std::sqrt(area);

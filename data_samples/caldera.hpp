@@ -6,8 +6,9 @@
 ///   level 1883 m; area 53 km2; greatest depth 594 m; volume 18.7 km3   (USGS survey of 2000; NPS)
 ///   the lake measures about 9.7 km east-west and 8.0 km north-south     (NPS)
 ///   Wizard Island: summit 2113 m, area 1.28 km2 (316 acres), in the west (USGS, NPS)
-///   rim: Hillman Peak 2484 m, The Watchman 2442, Llao Rock 2453, Cloudcap 2458, Garfield Peak 2455,
-///   Rim Village 2164; Mount Scott 2721 m, outside the eastern rim       (USGS topographic map)
+///   rim: Hillman Peak 2484 m, The Watchman 2442, Llao Rock 2453, Cloudcap 2458, Garfield Peak
+///   2455, Rim Village 2164; Mount Scott 2721 m, outside the eastern rim       (USGS topographic
+///   map)
 #include "core/grid.hpp"
 
 namespace tarn::samples {

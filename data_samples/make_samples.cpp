@@ -19,7 +19,8 @@ void write_bowl(const std::filesystem::path& path) {
             const double x = col * spacing - half, y = half - row * spacing;
             z[{col, row}] = static_cast<float>(40.0 * (x * x + y * y) / (500.0 * 500.0));
         }
-    const double transform[6] = {500'000.0 - half - 1.0, spacing, 0.0, 5'300'000.0 + half + 1.0, 0.0, -spacing};
+    const double transform[6] = {500'000.0 - half - 1.0,   spacing, 0.0,
+                                 5'300'000.0 + half + 1.0, 0.0,     -spacing};
     tarn::dem::write_elevations(path, z, "EPSG:32633", transform,
                                 "Analytic bowl z = 40 (r/500)^2 m; not a real place");
 }
@@ -36,8 +37,9 @@ int main(int argc, char** argv) {
         std::filesystem::create_directories(folder);
         const auto c = tarn::samples::make_caldera(25.0);
         const double transform[6] = {c.west_m, c.spacing_m, 0.0, c.north_m, 0.0, -c.spacing_m};
-        tarn::dem::write_elevations(folder / "caldera.tif", c.elevation_m, "EPSG:32610", transform,
-                                    "Crater Lake, Oregon: RECONSTRUCTION from published figures, not a survey");
+        tarn::dem::write_elevations(
+            folder / "caldera.tif", c.elevation_m, "EPSG:32610", transform,
+            "Crater Lake, Oregon: RECONSTRUCTION from published figures, not a survey");
         write_bowl(folder / "bowl.tif");
         std::cout << "wrote " << (folder / "caldera.tif").string() << ": level "
                   << tarn::samples::caldera_level_m << " m, " << c.area_m2 / 1e6 << " km2, "

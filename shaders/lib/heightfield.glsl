@@ -17,6 +17,7 @@
 struct Field {
     ivec2 cells;       // nodes minus one
     vec2 nodes;        // as floats
+    vec2 texel;        // one over them
     vec2 ground_m;     // x: height of code 0, y: metres per unit texel
     vec2 water_m;      // the same for the water
     float top_m;       // no node is higher
@@ -26,7 +27,7 @@ struct Field {
 
 // field_of — the field that a view block describes.
 Field field_of(ViewBlock view) {
-    return Field(ivec2(view.grid.xy) - 1, view.grid.xy, vec2(0.0, view.heights.y), view.heights.zw,
+    return Field(ivec2(view.grid.xy) - 1, view.grid.xy, 1.0 / view.grid.xy, vec2(0.0, view.heights.y), view.heights.zw,
                  view.grid.w, int(view.walk.x), int(view.walk.y));
 }
 
@@ -84,7 +85,7 @@ float first_crossing(float above, float below, float curve) {
 // trace_field
 //
 //   heights     RG16, ground and water codes; water code 0 = none
-//   maxima      RG32F, level L in mip level 2 (L - 1); red: ground, green: ground and water
+//   maxima      RG32F, level L in mip level 2 (L - 1); red: ground, green: water (-1e30: none)
 //   t_max       [m]; the walk ends there without a hit
 //   with_water  stop at the water's surface too (only from above)
 //   returns     true with `hit` filled in
@@ -122,6 +123,7 @@ bool trace_field(sampler2D heights, sampler2D maxima, Field field, Ray ray, floa
     ivec2 stride = 2 * ahead - 1;
     int level = field.root;
     ivec2 block = ivec2(0);
+    bool near_water = false; // is there any water in the block of 4 x 4 cells
 
     for (int i = 0; i < field.step_limit; ++i) {
         vec2 border = vec2(((block + ahead) << (2 * level)) - ray.base);
@@ -131,20 +133,22 @@ bool trace_field(sampler2D heights, sampler2D maxima, Field field, Ray ray, floa
 
         if (level > 0) {
             vec2 highest = texelFetch(maxima, block, 2 * (level - 1)).rg;
-            if (lowest <= (with_water ? highest.g : highest.r) + slack) {
+            float top = with_water ? max(highest.r, highest.g) : highest.r;
+            if (lowest <= top + slack) {
                 --level;
+                near_water = with_water && highest.g > -1e29;
                 ivec2 child = (ivec2(floor(o + t * d)) + ray.base) >> (2 * level);
                 block = clamp(child, block * 4, block * 4 + 3);
                 block = min(block, (field.cells - 1) >> (2 * level));
                 continue;
             }
         } else {
-            vec2 middle = (vec2(block) + 1.0) / field.nodes;
+            vec2 middle = (vec2(block) + 1.0) * field.texel;
             vec4 ground = textureGather(heights, middle, 0) * field.ground_m.y + field.ground_m.x;
             float highest = max(max(ground.x, ground.y), max(ground.z, ground.w));
             vec4 water = vec4(0.0);
             bool wet = false;
-            if (with_water) {
+            if (near_water) {
                 vec4 code = textureGather(heights, middle, 1);
                 wet = all(greaterThan(code, vec4(0.0)));
                 water = code * field.water_m.y + field.water_m.x;

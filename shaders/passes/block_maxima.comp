@@ -23,7 +23,7 @@ void main() {
             vec2 code = texelFetch(heights, node, 0).rg;
             float ground = code.r * view.heights.y;
             float water = code.g > 0.0 ? code.g * view.heights.w + view.heights.z : -1e30;
-            highest = max(highest, vec2(ground, max(ground, water)));
+            highest = max(highest, vec2(ground, water));
         }
     imageStore(maxima, block, vec4(highest, 0.0, 0.0));
 }

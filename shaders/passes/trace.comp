@@ -33,13 +33,11 @@ bool on(uint flag) { return (view.counts.z & flag) != 0u; }
 
 // A ray still to be followed, and how much its radiance counts in the pixel.
 struct Segment {
-    Ray ray;
+    ivec2 base;     // node that origin.xy counts from
+    vec3 origin;    // columns, rows, height
     vec3 direction; // unit, scene axes
     vec3 weight;
     bool in_water;
-    float level;    // of that water
-    bool bed_known;
-    float before_m; // path already travelled, for the footprint of a pixel
 };
 
 float surface_reflectance(float cos_i, float eta) {
@@ -62,6 +60,72 @@ bool lit_along(Field field, ivec2 base, vec3 from, vec3 towards, float t_max) {
                         ignored);
 }
 
+// Sunlight just below a flat surface: one value for the whole lake.
+vec3 sun_below() {
+    return view.sun.z > 0.0 ? -refracted(-view.sun.xyz, 1.0 / view.attenuation.w) : vec3(0.0, 0.0, 1.0);
+}
+
+vec3 sun_irradiance_below(vec3 below) {
+    float sine = view.sun.z; // of the sun's elevation
+    return sine > 0.0 ? view.sun_irradiance.rgb * (sine / below.z) *
+                            (1.0 - surface_reflectance(sine, 1.0 / view.attenuation.w))
+                      : vec3(0.0);
+}
+
+// Radiance that leaves the ground at a hit: land in the air, bed under water.
+//
+//   place, base  of the hit: height, and node plus position in the cell
+//   level        of the water above, if in_water
+//   path_m       length of the way here, for the footprint of a pixel
+vec3 shade(Field field, Hit hit, vec3 place, ivec2 base, bool in_water, float level, float path_m) {
+    vec2 gradient = ground_gradient(heights, field.nodes, hit.cell, hit.inside, field.ground_m.y);
+    vec3 normal = normal_of(gradient, view.grid.z);
+    float footprint = view.camera.w * path_m;
+    float shore = in_water ? level : view.look.z;
+    vec2 nodes = vec2(base) + place.xy;
+    vec3 albedo = vec3(view.look.w);
+    if (view.look.w < 0.0) {
+        float near_water = water_share(heights, field.nodes, hit.cell, hit.inside);
+        albedo = ground_albedo(nodes * view.grid.z, place.z - shore, in_water, near_water, view.look.x - shore,
+                               view.look.y - shore, length(gradient) / view.grid.z, footprint);
+        if (on(TARN_FLAG_ORTHO) && !in_water) {
+            vec2 at = (nodes - view.ortho.xy) / view.ortho.zw;
+            if (all(greaterThan(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)))) {
+                float lod = max(0.0, log2(max(footprint, 1e-6) / view.ortho_lod.x));
+                vec4 photo = textureLod(ortho, at, lod);
+                albedo = mix(albedo, photo.rgb, photo.a);
+            }
+        }
+    }
+
+    vec3 attenuation = view.attenuation.rgb;
+    vec3 sun = view.sun.xyz;
+    vec3 towards = in_water ? sun_below() : sun;
+    float facing = sun.z > 0.0 ? max(dot(normal, towards), 0.0) : 0.0;
+    float depth = in_water ? max(level - place.z, 0.0) : 0.0;
+    vec3 sunlight = vec3(0.0);
+    if (facing > 0.0) {
+        bool lit = true;
+        if (on(TARN_FLAG_SHADOWS)) {
+            vec3 from = place + vec3(0.0, 0.0, view.options.x);
+            // Under water the sun's ray is followed to the surface, then on through the air.
+            for (int leg = in_water ? 0 : 1; leg < 2 && lit; ++leg) {
+                float t_leg = leg == 0 ? max(level - from.z, 0.0) / towards.z : far_m;
+                lit = lit_along(field, base, from, leg == 0 ? towards : sun, t_leg);
+                from = vec3(from.xy + vec2(towards.x, -towards.y) / view.grid.z * t_leg, max(level, from.z));
+            }
+        }
+        if (lit)
+            sunlight = facing * (in_water ? sun_irradiance_below(towards) *
+                                                transmittance(attenuation, depth / towards.z)
+                                          : view.sun_irradiance.rgb);
+    }
+    vec3 skylight = in_water ? view.sky_irradiance.rgb * sky_entering *
+                                   transmittance(attenuation, sky_slant * depth)
+                             : view.sky_irradiance.rgb;
+    return albedo * inverse_pi * (sunlight + skylight * (0.5 + 0.5 * normal.z));
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     ivec2 size = ivec2(view.counts.xy);
@@ -71,148 +135,96 @@ void main() {
     float index = view.attenuation.w, d_max = view.backscattering.w;
     vec3 attenuation = view.attenuation.rgb;
 
-    // Sunlight just below a flat surface: one value for the whole lake.
-    vec3 sun = view.sun.xyz;
-    vec3 sun_below = sun.z > 0.0 ? -refracted(-sun, 1.0 / index) : vec3(0.0, 0.0, 1.0);
-    vec3 sun_irradiance_below = vec3(0.0);
-    if (sun.z > 0.0)
-        sun_irradiance_below = view.sun_irradiance.rgb * (sun.z / sun_below.z) *
-                               (1.0 - surface_reflectance(sun.z, 1.0 / index));
-    vec3 sky_irradiance_below = view.sky_irradiance.rgb * sky_entering;
-
     vec3 direction = pixel_direction(view.forward.xyz, view.right.xyz, view.up.xyz,
                                      vec2(view.right.w, view.up.w),
                                      (vec2(pixel) + view.offset.xy) / vec2(size));
-    Segment todo[2];
-    int pending = 1;
-    bool under_water = on(TARN_FLAG_UNDER_WATER);
-    todo[0] = Segment(ray_from(view.walk.zw, view.camera.xyz, direction, view.grid.z), direction, vec3(1.0), under_water,
-                      view.options.y, view.options.z > 0.5, 0.0);
+    // One ray is followed, at most one waits: named variables, not an array, which would live in
+    // slow memory. What holds for both after the split is kept once.
+    Segment now = Segment(view.walk.zw, view.camera.xyz, direction, vec3(1.0), on(TARN_FLAG_UNDER_WATER));
+    Segment waiting = now;
+    bool more = false;
+    float level = view.options.y;             // of the water that a ray is in, or was split at
+    bool bed_known = view.options.z > 0.5;    // in that lake
+    float before_m = 0.0;                     // path to the split, for the footprint of a pixel
     vec3 radiance = vec3(0.0);
     float first_distance = far_m;
 
-    for (int turn = 0; turn < 3 && pending > 0; ++turn) {
-        Segment now = todo[--pending];
-        float start_depth = now.in_water ? max(now.level - now.ray.origin.z, 0.0) : 0.0;
+    for (int turn = 0; turn < 3; ++turn) {
+        float start_depth = now.in_water ? max(level - now.origin.z, 0.0) : 0.0;
         float to_surface = now.in_water && now.direction.z > 1e-6 ? start_depth / now.direction.z : far_m;
         float reach = now.in_water ? min(to_surface, d_max) : far_m;
         bool water_counts = turn == 0 && !now.in_water;
 
         Hit hit;
         bool found = false;
-        if (!now.in_water || now.bed_known)
-            found = trace_field(heights, maxima, field, now.ray, reach, water_counts, hit);
+        Ray ray = ray_from(now.base, now.origin, now.direction, view.grid.z);
+        if (!now.in_water || bed_known)
+            found = trace_field(heights, maxima, field, ray, reach, water_counts, hit);
         float travelled = found ? hit.t : reach;
         bool at_surface = found ? hit.water : now.in_water && to_surface <= d_max;
         if (turn == 0)
             first_distance = found || at_surface ? travelled : far_m;
         // Where the ray has come to: a node and what is left, like the ray itself.
-        ivec2 base = found ? hit.cell : now.ray.base;
-        vec3 place = now.ray.origin + travelled * now.ray.direction;
+        ivec2 base = found ? hit.cell : ray.base;
+        vec3 place = ray.origin + travelled * ray.direction;
         if (found)
             place.xy = hit.inside;
 
         vec3 weight = now.weight;
         if (now.in_water) {
             float sink = -now.direction.z;
+            vec3 below = sun_below();
             radiance += weight * (path_radiance(view.backscattering.rgb, attenuation,
-                                                sun_irradiance_below, 1.0 / sun_below.z, start_depth,
+                                                sun_irradiance_below(below), 1.0 / below.z, start_depth,
                                                 sink, travelled) +
                                   path_radiance(view.backscattering.rgb, attenuation,
-                                                sky_irradiance_below * sky_slant, sky_slant,
-                                                start_depth, sink, travelled));
+                                                view.sky_irradiance.rgb * (sky_entering * sky_slant),
+                                                sky_slant, start_depth, sink, travelled));
             weight *= transmittance(attenuation, travelled);
         }
 
+        bool ended = true;
         if (at_surface) { // split in two; this happens in the first turn only
-            if (turn > 0)
-                continue;
-            float level = now.in_water ? now.level : place.z;
-            bool bed_known = now.bed_known;
-            if (!now.in_water) {
-                float nearest = far_m;
-                for (uint k = 0u; k < view.counts.w; ++k)
-                    if (abs(lakes[k].x - level) < nearest) {
-                        nearest = abs(lakes[k].x - level);
-                        bed_known = lakes[k].y > 0.5;
-                    }
+            if (turn == 0) {
+                if (!now.in_water) {
+                    level = place.z;
+                    float nearest = far_m;
+                    for (uint k = 0u; k < view.counts.w; ++k)
+                        if (abs(lakes[k].x - level) < nearest) {
+                            nearest = abs(lakes[k].x - level);
+                            bed_known = lakes[k].y > 0.5;
+                        }
+                }
+                before_m = travelled;
+                float eta = now.in_water ? index : 1.0 / index;
+                float mirror = surface_reflectance(min(abs(now.direction.z), 1.0), eta);
+                // What is conserved is radiance over index squared.
+                float through = (1.0 - mirror) * eta * eta;
+                vec3 start = vec3(place.xy, level);
+                vec3 bounced = vec3(now.direction.xy, -now.direction.z);
+                vec3 bent = mirror < 1.0 ? refracted(now.direction, eta) : bounced;
+                Segment reflected_part = Segment(base, start, bounced, weight * mirror, now.in_water);
+                Segment refracted_part = Segment(base, start, bent, weight * through, !now.in_water);
+                bool reflect_it = on(TARN_FLAG_REFLECTION);
+                bool refract_it = on(TARN_FLAG_REFRACTION) && mirror < 1.0;
+                waiting = reflected_part;
+                more = reflect_it && refract_it;
+                now = refract_it ? refracted_part : reflected_part;
+                ended = !reflect_it && !refract_it;
             }
-            float eta = now.in_water ? index : 1.0 / index;
-            float mirror = surface_reflectance(min(abs(now.direction.z), 1.0), eta);
-            // What is conserved is radiance over index squared.
-            float through = (1.0 - mirror) * eta * eta;
-            vec3 start = vec3(place.xy, level);
-            vec3 bounced = vec3(now.direction.xy, -now.direction.z);
-            if (on(TARN_FLAG_REFLECTION))
-                todo[pending++] = Segment(ray_from(base, start, bounced, view.grid.z), bounced, weight * mirror,
-                                          now.in_water, level, bed_known, travelled);
-            if (on(TARN_FLAG_REFRACTION) && mirror < 1.0) {
-                vec3 bent = refracted(now.direction, eta);
-                todo[pending++] = Segment(ray_from(base, start, bent, view.grid.z), bent, weight * through,
-                                          !now.in_water, level, bed_known, travelled);
-            }
-            continue;
-        }
-        if (!found) {
+        } else if (!found) {
             if (!now.in_water)
                 radiance += weight * sky(now.direction);
-            continue;
-        }
-
-        // Ground: land in the air, bed under water.
-        vec2 gradient = ground_gradient(heights, field.nodes, hit.cell, hit.inside, field.ground_m.y);
-        vec3 normal = normal_of(gradient, view.grid.z);
-        float footprint = view.camera.w * (now.before_m + travelled);
-        float level = now.in_water ? now.level : view.look.z;
-        vec2 nodes = vec2(base) + place.xy;
-        vec3 albedo;
-        if (view.look.w >= 0.0) {
-            albedo = vec3(view.look.w);
         } else {
-            float near_water = water_share(heights, field.nodes, hit.cell, hit.inside);
-            albedo = ground_albedo(nodes * view.grid.z, place.z - level, now.in_water, near_water, view.look.x - level,
-                                   view.look.y - level, length(gradient) / view.grid.z, footprint);
-            if (on(TARN_FLAG_ORTHO) && !now.in_water) {
-                vec2 at = (nodes - view.ortho.xy) / view.ortho.zw;
-                if (all(greaterThan(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)))) {
-                    float lod = max(0.0, log2(max(footprint, 1e-6) / view.ortho_lod.x));
-                    vec4 photo = textureLod(ortho, at, lod);
-                    albedo = mix(albedo, photo.rgb, photo.a);
-                }
-            }
+            radiance += weight * shade(field, hit, place, base, now.in_water, level, before_m + travelled);
         }
-
-        vec3 towards = now.in_water ? sun_below : sun;
-        float facing = sun.z > 0.0 ? max(dot(normal, towards), 0.0) : 0.0;
-        float depth = now.in_water ? max(level - place.z, 0.0) : 0.0;
-        vec3 sunlight = vec3(0.0);
-        if (facing > 0.0) {
-            bool lit = true;
-            if (on(TARN_FLAG_SHADOWS)) {
-                vec3 from = place + vec3(0.0, 0.0, view.options.x);
-                // Under water the sun's ray is followed to the surface, then on through the air.
-                int legs = now.in_water ? 2 : 1;
-                for (int leg = 0; leg < legs && lit; ++leg) {
-                    bool wet_leg = now.in_water && leg == 0;
-                    float rise = max(level - from.z, 0.0);
-                    float t_leg = wet_leg ? rise / towards.z : far_m;
-                    lit = lit_along(field, base, from, wet_leg ? towards : sun, t_leg);
-                    if (wet_leg)
-                        from = vec3(from.xy + vec2(towards.x, -towards.y) / view.grid.z * t_leg,
-                                    max(level, from.z));
-                }
-            }
-            if (lit)
-                sunlight = facing * (now.in_water ? sun_irradiance_below *
-                                                        transmittance(attenuation, depth / towards.z)
-                                                  : view.sun_irradiance.rgb);
+        if (ended) {
+            if (!more)
+                break;
+            now = waiting;
+            more = false;
         }
-        vec3 skylight = now.in_water
-                            ? sky_irradiance_below * transmittance(attenuation, sky_slant * depth)
-                            : view.sky_irradiance.rgb;
-        radiance += weight * albedo * inverse_pi * (sunlight + skylight * (0.5 + 0.5 * normal.z));
     }
-
     radiance *= view.options.w;
     if (view.offset.z > 0.5)
         radiance += imageLoad(radiance_image, pixel).rgb;

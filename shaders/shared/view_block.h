@@ -18,7 +18,7 @@ using ivec4 = glm::ivec4;
 #define TARN_BLOCK_VIEW 0     // uniform block ViewBlock
 #define TARN_BUFFER_LAKES 0   // storage buffer of vec4: x level [m, block heights], y 1 = bed known
 #define TARN_TEXTURE_HEIGHTS 0 // RG16: ground and water codes, one texel a node
-#define TARN_TEXTURE_MAXIMA 1  // RG32F: block maxima of ground, and of ground and water
+#define TARN_TEXTURE_MAXIMA 1  // RG32F: block maxima of the ground and of the water
 #define TARN_TEXTURE_SKY 2     // RGBA32F: sky radiance
 #define TARN_TEXTURE_ORTHO 3   // SRGB8_ALPHA8: orthophoto
 #define TARN_IMAGE_RADIANCE 0  // rgba32f

@@ -27,7 +27,8 @@ Findings examine() {
     j["cpu_threads"] = std::thread::hardware_concurrency();
     j["displays"] = nlohmann::ordered_json::array();
     for (const auto& attempt : gpu::probe_displays())
-        j["displays"].push_back({{"way", attempt.way}, {"ok", attempt.ok}, {"result", attempt.result}});
+        j["displays"].push_back(
+            {{"way", attempt.way}, {"ok", attempt.ok}, {"result", attempt.result}});
     try {
         j["shaders"] = gpu::shader_root().string();
         const gpu::Context context;
@@ -35,7 +36,8 @@ Findings examine() {
                        {"renderer", context.renderer()},
                        {"version", context.version()},
                        {"max_texture_side_px", context.max_texture_side_px()}};
-        for (const char* pass : {"passes/block_maxima.comp", "passes/reduce_maxima.comp", "passes/trace.comp"})
+        for (const char* pass :
+             {"passes/block_maxima.comp", "passes/reduce_maxima.comp", "passes/trace.comp"})
             gpu::ComputeProgram(gpu::load_shader(gpu::shader_root(), pass));
         j["can_render"] = out.can_render = true;
     } catch (const Error& error) {
@@ -49,9 +51,11 @@ Findings examine() {
 
 void add_doctor(CLI::App& app, Run& run) {
     auto as_json = std::make_shared<bool>(false);
-    CLI::App* c = app.add_subcommand("doctor", "what this machine offers: OpenGL, EGL, limits, shaders");
+    CLI::App* c =
+        app.add_subcommand("doctor", "what this machine offers: OpenGL, EGL, limits, shaders");
     c->add_flag("--json", *as_json, "the same for programs");
-    c->footer("Exit code 0 if tarn can render here, else 1 (tarn render --reference needs no GPU).");
+    c->footer(
+        "Exit code 0 if tarn can render here, else 1 (tarn render --reference needs no GPU).");
     c->callback([as_json, &run] {
         run = [as_json] {
             const Findings found = examine();
@@ -60,11 +64,14 @@ void add_doctor(CLI::App& app, Run& run) {
                 std::cout << j.dump(2) << "\n";
                 return found.can_render ? 0 : 1;
             }
-            std::cout << "tarn " << j["tarn"].get<std::string>() << ", " << j["libraries"][0].get<std::string>()
-                      << ", " << j["libraries"][1].get<std::string>() << ", " << j["cpu_threads"] << " CPU threads\n";
+            std::cout << "tarn " << j["tarn"].get<std::string>() << ", "
+                      << j["libraries"][0].get<std::string>() << ", "
+                      << j["libraries"][1].get<std::string>() << ", " << j["cpu_threads"]
+                      << " CPU threads\n";
             for (const auto& d : j["displays"])
                 std::cout << "EGL " << d["way"].get<std::string>() << ": "
-                          << (d["ok"].get<bool>() ? "" : "not available, ") << d["result"].get<std::string>() << "\n";
+                          << (d["ok"].get<bool>() ? "" : "not available, ")
+                          << d["result"].get<std::string>() << "\n";
             if (j.contains("shaders"))
                 std::cout << "shaders in " << j["shaders"].get<std::string>() << "\n";
             if (j.contains("opengl"))
@@ -72,9 +79,10 @@ void add_doctor(CLI::App& app, Run& run) {
                           << j["opengl"]["renderer"].get<std::string>() << " (EGL "
                           << j["opengl"]["way"].get<std::string>() << "), textures up to "
                           << j["opengl"]["max_texture_side_px"] << " a side\n";
-            std::cout << (found.can_render ? "tarn can render here\n"
-                                           : "tarn can NOT render here: " + j["problem"].get<std::string>() +
-                                                 "\n(tarn render --reference works without a GPU)\n");
+            std::cout << (found.can_render
+                              ? "tarn can render here\n"
+                              : "tarn can NOT render here: " + j["problem"].get<std::string>() +
+                                    "\n(tarn render --reference works without a GPU)\n");
             return found.can_render ? 0 : 1;
         };
     });

@@ -3,13 +3,13 @@
 #include "app/console.hpp"
 #include "app/preview.hpp"
 #include "app/report.hpp"
+#include "app/view_options.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
 #include "dem/import.hpp"
 #include "dem/write.hpp"
 #include "geo/frame.hpp"
 #include "geo/sun.hpp"
-#include "app/view_options.hpp"
 #include "image/files.hpp"
 #include "scene/presets.hpp"
 #include "scene_files/scene_folder.hpp"
@@ -74,8 +74,10 @@ int run_import(Words& words) {
 
     progress.report(0.95, "writing");
     scene_files::FileNames files;
-    dem::write_heightfield(folder.path() / files.ground, scene.ground, scene.frame, "ground", false);
-    dem::write_heightfield(folder.path() / files.water, scene.water, scene.frame, "water level", true);
+    dem::write_heightfield(folder.path() / files.ground, scene.ground, scene.frame, "ground",
+                           false);
+    dem::write_heightfield(folder.path() / files.water, scene.water, scene.frame, "water level",
+                           true);
     if (scene.ortho) {
         files.ortho = "ortho.tif";
         dem::write_ortho(folder.path() / files.ortho, *scene.ortho, scene.frame);
@@ -95,31 +97,39 @@ void add_import(CLI::App& app, Run& run) {
     auto words = std::make_shared<Words>();
     dem::ImportOptions& options = words->options;
     CLI::App* c = app.add_subcommand("import", "elevation tiles + water level -> scene folder");
-    c->add_option("DEM", words->dems, "elevation rasters (GeoTIFF, .hgt, .asc, .zip: what GDAL reads)")
+    c->add_option("DEM", words->dems,
+                  "elevation rasters (GeoTIFF, .hgt, .asc, .zip: what GDAL reads)")
         ->required();
     c->add_option("-o,--output", words->scene, "scene folder to write")->required();
-    c->add_option("--level", words->level,
-                  "water level [m] in the DEM's vertical datum, or auto: the flat water surface found")
+    c->add_option(
+         "--level", words->level,
+         "water level [m] in the DEM's vertical datum, or auto: the flat water surface found")
         ->capture_default_str();
     c->add_option("--at", words->at, "LAT,LON of a point in the lake; default: the largest lake");
     c->add_option("--radius", options.radius_km, "cut the scene to this many km around --at");
-    c->add_option("--bounds", words->bounds, "cut the scene to WEST,SOUTH,EAST,NORTH [deg, WGS 84]");
-    c->add_option("--bathymetry", words->bathymetry, "raster of the lake's bed: elevations or depths");
+    c->add_option("--bounds", words->bounds,
+                  "cut the scene to WEST,SOUTH,EAST,NORTH [deg, WGS 84]");
+    c->add_option("--bathymetry", words->bathymetry,
+                  "raster of the lake's bed: elevations or depths");
     c->add_option("--bathymetry-kind", words->bathymetry_kind, "what its values are")
         ->check(CLI::IsMember({"auto", "elevation", "depth"}))
         ->capture_default_str();
-    c->add_option("--bed", words->bed, "whether the DEM itself holds the bed; auto: not if it is flat")
+    c->add_option("--bed", words->bed,
+                  "whether the DEM itself holds the bed; auto: not if it is flat")
         ->check(CLI::IsMember({"auto", "measured", "unknown"}))
         ->capture_default_str();
     c->add_option("--ortho", words->ortho, "aerial picture to drape over the land");
-    c->add_option("--spacing", options.spacing_m, "distance between nodes [m]; default: loses nothing");
+    c->add_option("--spacing", options.spacing_m,
+                  "distance between nodes [m]; default: loses nothing");
     c->add_option("--crs", options.crs, "CRS of the DEMs instead of their own, e.g. EPSG:27700");
-    c->add_option("--nodata", options.nodata, "value that means no data, besides what the files declare");
+    c->add_option("--nodata", options.nodata,
+                  "value that means no data, besides what the files declare");
     c->add_option("--name", options.name, "name of the lake");
-    c->footer("Examples:\n"
-              "  tarn import rotoma.tif --level 313.31 -o rotoma\n"
-              "  tarn import N43E006.hgt N43E007.hgt.zip --at 43.766,6.184 -o sainte-croix\n"
-              "  tarn import tiles/*.asc --crs EPSG:27700 --level 60 --at 51.83,-2.72 --radius 2 -o usk");
+    c->footer(
+        "Examples:\n"
+        "  tarn import rotoma.tif --level 313.31 -o rotoma\n"
+        "  tarn import N43E006.hgt N43E007.hgt.zip --at 43.766,6.184 -o sainte-croix\n"
+        "  tarn import tiles/*.asc --crs EPSG:27700 --level 60 --at 51.83,-2.72 --radius 2 -o usk");
     c->callback([words, &run] { run = [words] { return run_import(*words); }; });
 }
 

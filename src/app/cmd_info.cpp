@@ -15,14 +15,16 @@ void add_info(CLI::App& app, Run& run) {
         bool json = false;
     };
     auto words = std::make_shared<Words>();
-    CLI::App* c = app.add_subcommand("info", "what is in a scene: lakes, georeference, import report");
+    CLI::App* c =
+        app.add_subcommand("info", "what is in a scene: lakes, georeference, import report");
     c->add_option("SCENE", words->scene, "scene folder")->required();
     c->add_flag("--json", words->json, "the same for programs (as scene.json holds it)");
     c->footer("Examples:\n  tarn info rotoma\n  tarn info rotoma --json | jq .lakes[0].area_m2");
     c->callback([words, &run] {
         run = [words] {
             const scene::Scene scene = scene_files::load(words->scene);
-            std::cout << (words->json ? scene_files::to_json(scene, {.ortho = scene.ortho ? "ortho.tif" : ""})
+            std::cout << (words->json ? scene_files::to_json(
+                                            scene, {.ortho = scene.ortho ? "ortho.tif" : ""})
                                       : full_report(scene));
             return 0;
         };

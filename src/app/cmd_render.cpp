@@ -41,40 +41,48 @@ double choose_exposure(const Words& words, const Image& picture, const scene::Sc
     }
     const scene::Lighting& light = view.lighting;
     const double incident =
-        (light.sun_irradiance.y * std::max(light.sun_direction.z, 0.0) + light.sky_irradiance.y) / 3.14159265;
+        (light.sun_irradiance.y * std::max(light.sun_direction.z, 0.0) + light.sky_irradiance.y) /
+        3.14159265;
     const double usual = 1.25 / std::max(incident, 1e-4);
     const glm::dvec3& p = view.camera.position;
     const auto water = scene.water_level_m(p.x, p.y);
     const bool dive = water && p.z < *water;
-    return image::auto_exposure(picture, 0.25, dive ? usual * 0.2 : usual * 0.5, usual * (dive ? 400.0 : 2.0));
+    return image::auto_exposure(picture, 0.25, dive ? usual * 0.2 : usual * 0.5,
+                                usual * (dive ? 400.0 : 2.0));
 }
 
-image::Metadata describe(const scene::Scene& scene, const scene::View& view, const std::string& device) {
-    const LakeRecord& lake = scene.lake_at_level(
-        scene.water_level_m(view.camera.position.x, view.camera.position.y).value_or(scene.lakes.front().level_m));
+image::Metadata describe(const scene::Scene& scene, const scene::View& view,
+                         const std::string& device) {
+    const LakeRecord& lake =
+        scene.lake_at_level(scene.water_level_m(view.camera.position.x, view.camera.position.y)
+                                .value_or(scene.lakes.front().level_m));
     const scene::Camera& c = view.camera;
     const GeoPoint eye = geo::to_geo(scene.frame, {c.position.x, c.position.y});
     const glm::dvec3& s = view.lighting.sun_direction;
     const auto triple = [](const glm::dvec3& v) { return text(v.x, ",", v.y, ",", v.z); };
     return {
         {"Software", text("tarn ", TARN_VERSION)},
-        {"Title", text(lake.name.empty() ? "Lake" : lake.name, " at ", fixed(lake.level_m, 2), " m")},
+        {"Title",
+         text(lake.name.empty() ? "Lake" : lake.name, " at ", fixed(lake.level_m, 2), " m")},
         {"tarn:place", text(fixed(lake.position.lat_deg, 6), ",", fixed(lake.position.lon_deg, 6))},
         {"tarn:level_m", text(lake.level_m)},
         {"tarn:vertical_datum", scene.frame.vertical_datum},
         {"tarn:bed", to_string(lake.bed)},
-        {"tarn:camera", text("x=", c.position.x, ",y=", c.position.y, ",z=", c.position.z, ",dx=", c.forward.x,
-                             ",dy=", c.forward.y, ",dz=", c.forward.z, ",ux=", c.up.x, ",uy=", c.up.y, ",uz=",
-                             c.up.z, ",fov=", c.fov_deg)},
-        {"tarn:camera_place", text(fixed(eye.lat_deg, 6), ",", fixed(eye.lon_deg, 6), " at ", fixed(c.position.z, 2), " m")},
+        {"tarn:camera", text("x=", c.position.x, ",y=", c.position.y, ",z=", c.position.z,
+                             ",dx=", c.forward.x, ",dy=", c.forward.y, ",dz=", c.forward.z,
+                             ",ux=", c.up.x, ",uy=", c.up.y, ",uz=", c.up.z, ",fov=", c.fov_deg)},
+        {"tarn:camera_place", text(fixed(eye.lat_deg, 6), ",", fixed(eye.lon_deg, 6), " at ",
+                                   fixed(c.position.z, 2), " m")},
         {"tarn:sun_direction", triple(s)},
-        {"tarn:water", text(scene.optics.name, "; a ", triple(scene.optics.absorption_per_m), " /m; b_b ",
-                            triple(scene.optics.backscattering_per_m), " /m; n ", scene.optics.index)},
+        {"tarn:water",
+         text(scene.optics.name, "; a ", triple(scene.optics.absorption_per_m), " /m; b_b ",
+              triple(scene.optics.backscattering_per_m), " /m; n ", scene.optics.index)},
         {"tarn:renderer", device},
         {"tarn:command", command_line()}};
 }
 
-Picture develop(const Words& words, const Image& picture, const scene::Scene& scene, const scene::View& view) {
+Picture develop(const Words& words, const Image& picture, const scene::Scene& scene,
+                const scene::View& view) {
     if (words.tone == "none") // values as they are, 1 = white
         return image::encode_linear(picture);
     return image::tone_map(picture, choose_exposure(words, picture, scene, view));
@@ -84,7 +92,8 @@ int run_render(Words& words) {
     for (const std::string& output : words.outputs) {
         const std::string extension = std::filesystem::path(output).extension().string();
         if (extension != ".png" && extension != ".exr")
-            throw Error("-o '" + output + "': pictures are .png or .exr", "choose one of these endings");
+            throw Error("-o '" + output + "': pictures are .png or .exr",
+                        "choose one of these endings");
         const auto folder = std::filesystem::path(output).parent_path();
         if (!folder.empty() && !std::filesystem::is_directory(folder))
             throw Error(folder.string() + ": no such folder", "create it first");
@@ -117,19 +126,22 @@ int run_render(Words& words) {
             image::write_exr(output, picture, metadata);
         else
             image::write_png(output, develop(words, picture, scene, view), metadata);
-        std::cout << "wrote " << output << " (" << picture.width_px << " x " << picture.height_px << ", "
-                  << view.settings.samples << (view.settings.samples == 1 ? " sample" : " samples") << ", "
-                  << fixed(total_s - setup_s, 2) << " s after " << fixed(setup_s, 2) << " s of set-up, " << device
-                  << ")\n";
+        std::cout << "wrote " << output << " (" << picture.width_px << " x " << picture.height_px
+                  << ", " << view.settings.samples
+                  << (view.settings.samples == 1 ? " sample" : " samples") << ", "
+                  << fixed(total_s - setup_s, 2) << " s after " << fixed(setup_s, 2)
+                  << " s of set-up, " << device << ")\n";
     }
     if (!words.against.empty()) {
         const Image other = image::read_exr(words.against);
         const image::Difference d = image::compare(picture, other);
-        const image::DistanceDifference z = image::compare_distances(picture, other, scene.ground.scale_m, 1e-5);
+        const image::DistanceDifference z =
+            image::compare_distances(picture, other, scene.ground.scale_m, 1e-5);
         std::cout << "against " << words.against << ": relative radiance error mean "
-                  << fixed(100 * d.mean_relative, 4) << " %, 95th " << fixed(100 * d.p95_relative, 4)
-                  << " %, 99th percentile " << fixed(100 * d.p99_relative, 4) << " %, PSNR "
-                  << fixed(d.psnr_db, 1) << " dB\n  first hits: " << z.different << " of " << z.pixels - z.edges
+                  << fixed(100 * d.mean_relative, 4) << " %, 95th "
+                  << fixed(100 * d.p95_relative, 4) << " %, 99th percentile "
+                  << fixed(100 * d.p99_relative, 4) << " %, PSNR " << fixed(d.psnr_db, 1)
+                  << " dB\n  first hits: " << z.different << " of " << z.pixels - z.edges
                   << " pixels off by more than max(" << fixed(1000 * scene.ground.scale_m, 2)
                   << " mm, 1e-5 of the distance), " << z.edges << " edge pixels not judged\n";
     }
@@ -140,24 +152,30 @@ int run_render(Words& words) {
 
 void add_render(CLI::App& app, Run& run) {
     auto words = std::make_shared<Words>();
-    CLI::App* c = app.add_subcommand("render", "one picture of a scene (.png, .exr), no display needed");
+    CLI::App* c =
+        app.add_subcommand("render", "one picture of a scene (.png, .exr), no display needed");
     c->add_option("SCENE", words->scene, "scene folder")->required();
     c->add_option("-o,--output", words->outputs,
-                  "picture to write; .png for the eye, .exr linear with distances [m] in channel Z; may be repeated")
+                  "picture to write; .png for the eye, .exr linear with distances [m] in channel "
+                  "Z; may be repeated")
         ->required();
     add_view_options(*c, words->view);
-    c->add_option("--exposure", words->exposure, "factor on radiance, or auto")->capture_default_str();
+    c->add_option("--exposure", words->exposure, "factor on radiance, or auto")
+        ->capture_default_str();
     c->add_option("--tone", words->tone, "tone curve of a .png; none: linear radiance, 1 = white")
         ->check(CLI::IsMember({"eye", "none"}))
         ->capture_default_str();
-    c->add_flag("--reference", words->reference, "by the double-precision CPU tracer: slow, needs no GPU");
+    c->add_flag("--reference", words->reference,
+                "by the double-precision CPU tracer: slow, needs no GPU");
     c->add_option("--against", words->against, "print how far the picture is from this .exr");
-    c->footer("Examples:\n"
-              "  tarn render rotoma -o rotoma.png\n"
-              "  tarn render rotoma --camera dive --time 2026-01-15T12:00+13:00 -o dive.png\n"
-              "  tarn render rotoma --camera lat=-38.05,lon=176.58,above_water=30,heading=40,pitch=-10 -o a.png\n"
-              "  tarn render tank --ground-albedo 0.5 --sky-radiance 0 --sun-direction 1,0,1 \\\n"
-              "      --sun-irradiance 3.14159 --absorption-per-m 0 --backscattering-per-m 0 -o tank.exr");
+    c->footer(
+        "Examples:\n"
+        "  tarn render rotoma -o rotoma.png\n"
+        "  tarn render rotoma --camera dive --time 2026-01-15T12:00+13:00 -o dive.png\n"
+        "  tarn render rotoma --camera lat=-38.05,lon=176.58,above_water=30,heading=40,pitch=-10 "
+        "-o a.png\n"
+        "  tarn render tank --ground-albedo 0.5 --sky-radiance 0 --sun-direction 1,0,1 \\\n"
+        "      --sun-irradiance 3.14159 --absorption-per-m 0 --backscattering-per-m 0 -o tank.exr");
     c->callback([words, c, &run] {
         run = [words, c] {
             apply_settings_file(*c, words->view);

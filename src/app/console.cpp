@@ -73,7 +73,8 @@ void end_progress() {
     bar_shown = false;
 }
 
-std::vector<double> parse_numbers(const std::string& option, const std::string& words, std::size_t count) {
+std::vector<double> parse_numbers(const std::string& option, const std::string& words,
+                                  std::size_t count) {
     std::vector<double> out;
     std::size_t from = 0;
     while (true) {
@@ -84,8 +85,8 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
         from = comma + 1;
     }
     if (out.size() != count)
-        throw Error(text(option, " '", words, "': need ", count, " numbers with commas between, got ",
-                         out.size()));
+        throw Error(text(option, " '", words, "': need ", count,
+                         " numbers with commas between, got ", out.size()));
     return out;
 }
 
@@ -109,8 +110,9 @@ std::string format_area(double m2) {
 }
 
 std::string format_volume(double m3) {
-    return m3 >= 1e8 ? fixed(m3 / 1e9, 4) + " km3"
-           : m3 >= 1e6 ? fixed(m3 / 1e6, 3) + " million m3" : fixed(m3, 0) + " m3";
+    return m3 >= 1e8   ? fixed(m3 / 1e9, 4) + " km3"
+           : m3 >= 1e6 ? fixed(m3 / 1e6, 3) + " million m3"
+                       : fixed(m3, 0) + " m3";
 }
 
 } // namespace tarn::app

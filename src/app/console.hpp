@@ -21,7 +21,8 @@ void end_progress();
 
 /// "1,2.5,-3" as numbers.
 /// @throws tarn::Error  naming `option`, unless there are exactly `count`
-std::vector<double> parse_numbers(const std::string& option, const std::string& words, std::size_t count);
+std::vector<double> parse_numbers(const std::string& option, const std::string& words,
+                                  std::size_t count);
 
 /// One number for all three, or three.
 glm::dvec3 parse_triple(const std::string& option, const std::string& words);

@@ -21,7 +21,8 @@ void remember_command_line(int argc, char** argv) {
     typed = "tarn";
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
-        const bool plain = !word.empty() && word.find_first_of(" '\"\\$`*?;&|<>(){}[]") == std::string::npos;
+        const bool plain =
+            !word.empty() && word.find_first_of(" '\"\\$`*?;&|<>(){}[]") == std::string::npos;
         typed += plain ? " " + word : " '" + word + "'";
     }
 }
@@ -35,7 +36,8 @@ int main(int argc, char** argv) {
     app::remember_command_line(argc, argv);
     app::catch_interrupts();
 
-    CLI::App cli("tarn shows real lakes as they look, from elevation data and a water level.", "tarn");
+    CLI::App cli("tarn shows real lakes as they look, from elevation data and a water level.",
+                 "tarn");
     cli.set_version_flag("--version", TARN_VERSION);
     cli.require_subcommand(0, 1);
     cli.footer("Start with:  tarn import DEM.tif --level auto -o lake\n"
@@ -64,7 +66,8 @@ int main(int argc, char** argv) {
         spdlog::error(error.what());
     } catch (const std::bad_alloc&) {
         app::end_progress();
-        spdlog::error("out of memory; cut the scene with --at and --radius, or choose a coarser --spacing");
+        spdlog::error(
+            "out of memory; cut the scene with --at and --radius, or choose a coarser --spacing");
     } catch (const std::exception& error) {
         app::end_progress();
         spdlog::error("unexpected: {}", error.what());

@@ -27,7 +27,8 @@ glm::dvec3 tint(double share) {
 Picture draw_preview(const scene::Scene& scene, int side_px) {
     const Heightfield& g = scene.ground;
     const double longest = std::max(g.size().cols, g.size().rows);
-    const double step = std::max(longest / side_px, 0.25); // nodes per pixel; small grids are enlarged
+    const double step =
+        std::max(longest / side_px, 0.25); // nodes per pixel; small grids are enlarged
     Picture out;
     out.width_px = std::max(1, int(g.size().cols / step));
     out.height_px = std::max(1, int(g.size().rows / step));
@@ -38,19 +39,25 @@ Picture draw_preview(const scene::Scene& scene, int side_px) {
         for (int x = 0; x < out.width_px; ++x) {
             const double px = g.x_m((x + 0.5) * step), py = g.y_m((y + 0.5) * step);
             const double z = g.elevation_m(px, py);
-            const double dzdx = (g.elevation_m(px + reach, py) - g.elevation_m(px - reach, py)) / (2 * reach);
-            const double dzdy = (g.elevation_m(px, py + reach) - g.elevation_m(px, py - reach)) / (2 * reach);
+            const double dzdx =
+                (g.elevation_m(px + reach, py) - g.elevation_m(px - reach, py)) / (2 * reach);
+            const double dzdy =
+                (g.elevation_m(px, py + reach) - g.elevation_m(px, py - reach)) / (2 * reach);
             const glm::dvec3 normal = glm::normalize(glm::dvec3(-2.0 * dzdx, -2.0 * dzdy, 1.0));
-            const double shade = 0.35 + 0.75 * std::max(0.0, glm::dot(normal, glm::normalize(glm::dvec3(-1, 1, 1.2))));
+            const double shade =
+                0.35 +
+                0.75 * std::max(0.0, glm::dot(normal, glm::normalize(glm::dvec3(-1, 1, 1.2))));
             glm::dvec3 colour = tint((z - low) / std::max(high - low, 1.0)) * shade;
             if (const auto level = scene.water_level_m(px, py)) {
                 const LakeRecord& lake = scene.lake_at_level(*level);
-                const double depth = lake.max_depth_m ? (*level - z) / std::max(*lake.max_depth_m, 1.0) : 0.4;
+                const double depth =
+                    lake.max_depth_m ? (*level - z) / std::max(*lake.max_depth_m, 1.0) : 0.4;
                 colour = glm::mix(glm::dvec3(0.55, 0.78, 0.88), glm::dvec3(0.05, 0.22, 0.45),
                                   std::sqrt(std::clamp(depth, 0.0, 1.0)));
             }
             for (int k = 0; k < 3; ++k)
-                out.bytes[(std::size_t(y) * std::size_t(out.width_px) + std::size_t(x)) * 3 + std::size_t(k)] =
+                out.bytes[(std::size_t(y) * std::size_t(out.width_px) + std::size_t(x)) * 3 +
+                          std::size_t(k)] =
                     static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(colour[k], 0.0, 1.0)));
         }
 
@@ -66,8 +73,8 @@ Picture draw_preview(const scene::Scene& scene, int side_px) {
                      length >= 1000 ? fixed(length / 1000, 0) + " km" : fixed(length, 0) + " m");
     const LakeRecord& lake = scene.lakes.front();
     const std::string title = (lake.name.empty() ? "" : lake.name + ", ") + "level " +
-                              fixed(lake.level_m, 2) + " m, " + fixed(lake.area_m2 / 1e6, 2) + " km2" +
-                              (lake.bed == Bed::unknown ? ", bed unknown" : "");
+                              fixed(lake.level_m, 2) + " m, " + fixed(lake.area_m2 / 1e6, 2) +
+                              " km2" + (lake.bed == Bed::unknown ? ", bed unknown" : "");
     image::draw_text(out, margin, margin + size, size, title);
     return out;
 }

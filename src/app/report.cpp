@@ -48,20 +48,22 @@ std::string full_report(const scene::Scene& scene) {
     out += text("grid        ", g.size().cols, " x ", g.size().rows, " nodes, ", g.spacing_m,
                 " m apart: ", fixed((g.size().cols - 1) * g.spacing_m / 1000, 2), " x ",
                 fixed((g.size().rows - 1) * g.spacing_m / 1000, 2), " km\n");
-    out += text("heights     ", fixed(g.min_elevation_m(), 2), " to ", fixed(g.max_elevation_m(), 2),
-                " m, in steps of ", fixed(1000.0 * g.scale_m, 2), " mm\n");
-    out += text("frame       scene (0, 0) at ", fixed(origin.lat_deg, 6), ",", fixed(origin.lon_deg, 6),
-                "; ", scene.frame.proj, "\n");
+    out +=
+        text("heights     ", fixed(g.min_elevation_m(), 2), " to ", fixed(g.max_elevation_m(), 2),
+             " m, in steps of ", fixed(1000.0 * g.scale_m, 2), " mm\n");
+    out += text("frame       scene (0, 0) at ", fixed(origin.lat_deg, 6), ",",
+                fixed(origin.lon_deg, 6), "; ", scene.frame.proj, "\n");
     out += text("heights in  vertical datum: ", scene.frame.vertical_datum, "\n");
     out += text("water       ", scene.optics.name, ", index ", scene.optics.index, "\n");
     if (scene.ortho)
         out += text("picture     orthophoto ", scene.ortho->picture.width_px, " x ",
-                    scene.ortho->picture.height_px, ", ", fixed(scene.ortho->spacing_m, 2), " m a pixel\n");
+                    scene.ortho->picture.height_px, ", ", fixed(scene.ortho->spacing_m, 2),
+                    " m a pixel\n");
     const ImportReport& r = scene.report;
     out += text("import      ", r.created, " by tarn ", r.tarn_version, "\n  ", r.command, "\n");
     for (const ImportInput& in : r.inputs)
-        out += text("  ", in.role, " ", in.name, " (", in.format, ", ", in.size, ", crc32 ", in.checksum,
-                    ")\n    CRS ", in.crs, "; vertical datum ", in.vertical, "\n");
+        out += text("  ", in.role, " ", in.name, " (", in.format, ", ", in.size, ", crc32 ",
+                    in.checksum, ")\n    CRS ", in.crs, "; vertical datum ", in.vertical, "\n");
     out += text("  resampling  ", r.resampling, "\n");
     out += text("  voids       ", r.void_nodes, " of ", r.nodes, " nodes; ", r.filled_nodes,
                 " inside the data interpolated, ", r.outside_nodes,

@@ -32,8 +32,9 @@ double convergence_at(const scene::Scene& scene, double x, double y) {
 
 /// "key=value,key=value" with every key known.
 std::map<std::string, double> parse_pairs(const std::string& words) {
-    static const char* known[] = {"lat", "lon", "x", "y", "z", "above_ground", "above_water", "heading",
-                                  "pitch", "fov", "dx", "dy", "dz", "ux", "uy", "uz"};
+    static const char* known[] = {"lat",         "lon",     "x",     "y",   "z",  "above_ground",
+                                  "above_water", "heading", "pitch", "fov", "dx", "dy",
+                                  "dz",          "ux",      "uy",    "uz"};
     std::map<std::string, double> out;
     std::size_t from = 0;
     while (from <= words.size()) {
@@ -41,11 +42,13 @@ std::map<std::string, double> parse_pairs(const std::string& words) {
         const std::string pair = words.substr(from, comma - from);
         const std::size_t equals = pair.find('=');
         const std::string key = pair.substr(0, equals);
-        if (equals == std::string::npos || std::find(std::begin(known), std::end(known), key) == std::end(known))
+        if (equals == std::string::npos ||
+            std::find(std::begin(known), std::end(known), key) == std::end(known))
             throw Error("--camera: '" + pair + "' is not understood",
                         "use a camera's name, or lat, lon or x, y; above_ground, above_water or z; "
                         "heading, pitch or dx, dy, dz, ux, uy, uz; fov - each as key=number");
-        if (!out.emplace(key, parse_numbers("--camera " + key, pair.substr(equals + 1), 1)[0]).second)
+        if (!out.emplace(key, parse_numbers("--camera " + key, pair.substr(equals + 1), 1)[0])
+                 .second)
             throw Error("--camera: '" + key + "' is given twice");
         from = comma + 1;
     }
@@ -96,8 +99,9 @@ scene::Camera parse_camera(const std::string& words, const scene::Scene& scene, 
     if (has("z"))
         position.z = pairs.at("z");
     else if (has("above_water"))
-        position.z = scene.water_level_m(position.x, position.y).value_or(scene.lakes.front().level_m) +
-                     pairs.at("above_water");
+        position.z =
+            scene.water_level_m(position.x, position.y).value_or(scene.lakes.front().level_m) +
+            pairs.at("above_water");
     else
         position.z = scene.ground.elevation_m(position.x, position.y) + get("above_ground", 2.0);
     const double fov = get("fov", 50.0);
@@ -105,8 +109,9 @@ scene::Camera parse_camera(const std::string& words, const scene::Scene& scene, 
         exclude("dx", "heading");
         exclude("dy", "heading");
         exclude("dz", "pitch");
-        return scene::look_along(position, {get("dx", 0), get("dy", 0), get("dz", 0)},
-                                 {get("ux", 0), get("uy", 0), get("uz", has("ux") || has("uy") ? 0 : 1)}, fov);
+        return scene::look_along(
+            position, {get("dx", 0), get("dy", 0), get("dz", 0)},
+            {get("ux", 0), get("uy", 0), get("uz", has("ux") || has("uy") ? 0 : 1)}, fov);
     }
     const double heading = get("heading", 0.0) - convergence_at(scene, position.x, position.y);
     if (!(fov > 0.0 && fov <= 170.0))
@@ -124,22 +129,28 @@ glm::dvec3 sun_direction(const scene::Scene& scene, double julian_date_utc) {
 }
 
 void add_view_options(CLI::App& c, ViewWords& w) {
-    c.add_option("--camera", w.camera,
-                 "a camera of the scene (overview, shore, top, dive, ...) or key=number pairs: lat,lon or "
-                 "x,y [scene m]; above_ground, above_water or z [m]; heading, pitch or dx,dy,dz,ux,uy,uz; fov")
+    c.add_option(
+         "--camera", w.camera,
+         "a camera of the scene (overview, shore, top, dive, ...) or key=number pairs: lat,lon or "
+         "x,y [scene m]; above_ground, above_water or z [m]; heading, pitch or dx,dy,dz,ux,uy,uz; "
+         "fov")
         ->capture_default_str();
     c.add_option("--size", w.size, "WIDTHxHEIGHT [px], up to 16384 each")->capture_default_str();
     c.add_option("--samples", w.settings.samples, "rays a pixel, 1 to 1024")->capture_default_str();
     c.add_option("--time", w.time,
                  "date and time for the sun: 2026-06-21T15:00Z, +HH:MM, or none for solar time; "
                  "default: 09:30 solar time at midsummer");
-    c.add_option("--sun", w.sun, "AZIMUTH,ELEVATION of the sun [deg from true north, above horizon]");
+    c.add_option("--sun", w.sun,
+                 "AZIMUTH,ELEVATION of the sun [deg from true north, above horizon]");
     c.add_option("--sun-direction", w.sun_direction, "X,Y,Z towards the sun in scene axes (lab)");
     c.add_option("--sun-irradiance", w.sun_irradiance, "R,G,B or one number, facing the sun (lab)");
-    c.add_option("--sky-radiance", w.sky_radiance, "R,G,B or one number: an even sky instead of the clear one (lab)");
-    c.add_option("--ground-albedo", w.settings.ground_albedo, "one grey in [0, 1] for all ground (lab)");
+    c.add_option("--sky-radiance", w.sky_radiance,
+                 "R,G,B or one number: an even sky instead of the clear one (lab)");
+    c.add_option("--ground-albedo", w.settings.ground_albedo,
+                 "one grey in [0, 1] for all ground (lab)");
     c.add_option("--absorption-per-m", w.absorption, "R,G,B or one number: of the water [1/m]");
-    c.add_option("--backscattering-per-m", w.backscattering, "R,G,B or one number: of the water [1/m]");
+    c.add_option("--backscattering-per-m", w.backscattering,
+                 "R,G,B or one number: of the water [1/m]");
     c.add_option("--index", w.index, "of refraction of the water, [1, 3]");
     c.add_option("--fresnel", w.fresnel, "formula for the reflectance of the surface")
         ->check(CLI::IsMember({"exact", "schlick"}))
@@ -151,7 +162,8 @@ void add_view_options(CLI::App& c, ViewWords& w) {
     c.add_flag("--no-reflection", w.no_reflection, "leave out what the water mirrors");
     c.add_flag("--no-refraction", w.no_refraction, "leave out what is seen through the surface");
     c.add_flag("--no-sun-disc", w.no_sun_disc, "leave out the sun itself");
-    c.add_option("--settings", w.settings_file, "file with any of these options, one name = value a line");
+    c.add_option("--settings", w.settings_file,
+                 "file with any of these options, one name = value a line");
 }
 
 void apply_settings_file(CLI::App& c, const ViewWords& w) {
@@ -186,10 +198,12 @@ scene::View make_view(const ViewWords& w, scene::Scene& scene) {
     int width = 0, height = 0;
     char extra = 0;
     if (std::sscanf(w.size.c_str(), "%dx%d%c", &width, &height, &extra) != 2)
-        throw Error("--size '" + w.size + "' is not understood", "write WIDTHxHEIGHT, like 1280x720");
+        throw Error("--size '" + w.size + "' is not understood",
+                    "write WIDTHxHEIGHT, like 1280x720");
     view.settings.width_px = width;
     view.settings.height_px = height;
-    view.settings.fresnel = w.fresnel == "schlick" ? scene::Fresnel::schlick : scene::Fresnel::exact;
+    view.settings.fresnel =
+        w.fresnel == "schlick" ? scene::Fresnel::schlick : scene::Fresnel::exact;
     view.settings.shadows = !w.no_shadows;
     view.settings.reflection = !w.no_reflection;
     view.settings.refraction = !w.no_refraction;
@@ -200,7 +214,8 @@ scene::View make_view(const ViewWords& w, scene::Scene& scene) {
     if (!w.absorption.empty())
         scene.optics.absorption_per_m = parse_triple("--absorption-per-m", w.absorption);
     if (!w.backscattering.empty())
-        scene.optics.backscattering_per_m = parse_triple("--backscattering-per-m", w.backscattering);
+        scene.optics.backscattering_per_m =
+            parse_triple("--backscattering-per-m", w.backscattering);
     scene.optics.index = w.index.value_or(scene.optics.index);
     scene.optics.validate();
 
@@ -216,11 +231,13 @@ scene::View make_view(const ViewWords& w, scene::Scene& scene) {
     } else if (!w.sun.empty()) {
         const auto v = parse_numbers("--sun", w.sun, 2);
         if (std::abs(v[1]) > 90.0)
-            throw Error("--sun: the elevation must be in [-90, 90] degrees", "write AZIMUTH,ELEVATION");
+            throw Error("--sun: the elevation must be in [-90, 90] degrees",
+                        "write AZIMUTH,ELEVATION");
         const ScenePoint p = geo::to_scene(scene.frame, place);
         sun = towards(v[0] - convergence_at(scene, p.x_m, p.y_m), v[1]);
     } else {
-        sun = sun_direction(scene, w.time.empty() ? geo::default_time(place) : geo::parse_time(w.time, place));
+        sun = sun_direction(scene, w.time.empty() ? geo::default_time(place)
+                                                  : geo::parse_time(w.time, place));
     }
     view.lighting = scene::clear_sky(sun);
     if (!w.sky_radiance.empty()) {

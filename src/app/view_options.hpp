@@ -7,7 +7,8 @@
 
 namespace tarn::app {
 
-/// What was typed; empty = not given. The same names serve on the command line and in a settings file.
+/// What was typed; empty = not given. The same names serve on the command line and in a settings
+/// file.
 struct ViewWords {
     std::string camera = "overview", size = "1280x720";
     std::string time, sun, sun_direction, sun_irradiance, sky_radiance;
@@ -23,7 +24,8 @@ struct ViewWords {
 void add_view_options(CLI::App& command, ViewWords& words);
 
 /// Takes from the file named by --settings what was not typed.
-/// @throws tarn::Error  naming the file and the line's name, if that is no option or has a bad value
+/// @throws tarn::Error  naming the file and the line's name, if that is no option or has a bad
+/// value
 void apply_settings_file(CLI::App& command, const ViewWords& words);
 
 /// The view that the words ask for. Water optics given by hand are put into the scene.

@@ -11,7 +11,8 @@ namespace tarn {
 double Heightfield::elevation_m(double x, double y) const {
     const double c = std::clamp(col(x), 0.0, double(codes.size.cols - 1));
     const double r = std::clamp(row(y), 0.0, double(codes.size.rows - 1));
-    const int c0 = std::min(int(c), codes.size.cols - 2), r0 = std::min(int(r), codes.size.rows - 2);
+    const int c0 = std::min(int(c), codes.size.cols - 2),
+              r0 = std::min(int(r), codes.size.rows - 2);
     const double u = c - c0, v = r - r0;
     const double north = (1 - u) * elevation_m(Node{c0, r0}) + u * elevation_m(Node{c0 + 1, r0});
     const double south =

@@ -22,9 +22,9 @@ std::string to_string(Bed bed);
 Bed bed_from_string(const std::string& word);
 
 struct LakeRecord {
-    int id = 0;            ///< 1, 2, ... within the scene
-    std::string name;      ///< free text, may be empty
-    double level_m = 0.0;  ///< in the DEM's vertical datum
+    int id = 0;           ///< 1, 2, ... within the scene
+    std::string name;     ///< free text, may be empty
+    double level_m = 0.0; ///< in the DEM's vertical datum
     Bed bed = Bed::measured;
     double area_m2 = 0.0;      ///< wet nodes times spacing squared, in the grid's projection
     double true_area_m2 = 0.0; ///< the same on the ellipsoid: divided by the scale factor squared
@@ -32,8 +32,8 @@ struct LakeRecord {
     std::optional<double> volume_m3;    ///< sum over wet nodes of depth times spacing squared
     std::optional<double> max_depth_m;  ///< greatest depth of a wet node
     std::optional<double> mean_depth_m; ///< volume over area
-    double shoreline_m = 0.0; ///< length of the curve where ground and level cross, islands too
-    int islands = 0;          ///< dry parts (4-connected) that the lake surrounds
+    double shoreline_m = 0.0;  ///< length of the curve where ground and level cross, islands too
+    int islands = 0;           ///< dry parts (4-connected) that the lake surrounds
     bool open_at_edge = false; ///< touches the edge of the data: may go on outside
     double flat_share = 0.0;   ///< part of its nodes that lie in a flat surface of the DEM, [0, 1]
     GeoPoint position;         ///< a wet node deep inside the lake

@@ -1,5 +1,6 @@
 #pragma once
-/// @file bed.hpp  What lies under the water: a bathymetry raster, or room for water of unknown depth.
+/// @file bed.hpp  What lies under the water: a bathymetry raster, or room for water of unknown
+/// depth.
 #include "core/grid.hpp"
 
 #include <string>
@@ -17,9 +18,9 @@ enum class BathymetryKind { automatic, elevation, depth };
 /// @param bathymetry  on the same grid, NaN where not surveyed; depths of either sign
 /// @return  sentences for the report: how the values were read, how many nodes they changed
 /// @throws tarn::Error  if no value lies inside the lake
-std::vector<std::string> merge_bathymetry(Grid<float>& elevation_m,
-                                          const Grid<unsigned char>& wet, double level_m,
-                                          Grid<float> bathymetry, BathymetryKind kind);
+std::vector<std::string> merge_bathymetry(Grid<float>& elevation_m, const Grid<unsigned char>& wet,
+                                          double level_m, Grid<float> bathymetry,
+                                          BathymetryKind kind);
 
 /// Where the DEM holds the water's surface itself, lowers the lake's nodes so that water has
 /// room. At the rim by as much as the dry neighbours stand above the level, so that the drawn

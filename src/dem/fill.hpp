@@ -20,9 +20,9 @@ inline bool at_or_below(float elevation_m, double level_m) {
 
 struct Basin {
     std::size_t nodes = 0;
-    std::size_t at_level = 0;   ///< nodes within half a metre of the level: a water surface
-    Node seed;                  ///< its lowest node
-    bool open_at_edge = false;  ///< touches the grid's edge or a node in `outside`
+    std::size_t at_level = 0;  ///< nodes within half a metre of the level: a water surface
+    Node seed;                 ///< its lowest node
+    bool open_at_edge = false; ///< touches the grid's edge or a node in `outside`
 };
 
 /// Wet mask (1 = wet) reached from `seed`.

@@ -37,8 +37,10 @@ void each_flat(const Grid<float>& z, Visit visit) {
             for (std::size_t i = 0; i < members.size(); ++i) {
                 const Node at = members[i];
                 interiors += interior(z, at.col, at.row);
-                const Node next[4] = {{at.col - 1, at.row}, {at.col + 1, at.row},
-                                      {at.col, at.row - 1}, {at.col, at.row + 1}};
+                const Node next[4] = {{at.col - 1, at.row},
+                                      {at.col + 1, at.row},
+                                      {at.col, at.row - 1},
+                                      {at.col, at.row + 1}};
                 for (const Node n : next)
                     if (z.contains(n) && !seen[n] && z[n] == level) {
                         seen[n] = 1;
@@ -76,8 +78,10 @@ std::vector<FlatSurface> find_flats(const Grid<float>& z) {
         }
         for (std::size_t i = 0; i < queue.size(); ++i) {
             const Node at = queue[i];
-            const Node next[4] = {{at.col - 1, at.row}, {at.col + 1, at.row},
-                                  {at.col, at.row - 1}, {at.col, at.row + 1}};
+            const Node next[4] = {{at.col - 1, at.row},
+                                  {at.col + 1, at.row},
+                                  {at.col, at.row - 1},
+                                  {at.col, at.row + 1}};
             for (const Node n : next)
                 if (z.contains(n) && distance[n] < 0 && z[n] == level) {
                     distance[n] = distance[at] + 1;

@@ -1,5 +1,6 @@
 #pragma once
-/// @file flat.hpp  Water surfaces in an elevation model: connected nodes of one and the same height.
+/// @file flat.hpp  Water surfaces in an elevation model: connected nodes of one and the same
+/// height.
 ///
 /// Most DEMs hold a lake as a flat surface. A run of equal nodes is taken for water when it is
 /// large (64 nodes or more) and has an interior (9 nodes whose eight neighbours are equal too):
@@ -13,7 +14,7 @@ namespace tarn::dem {
 struct FlatSurface {
     float level_m = 0.0f;
     std::size_t nodes = 0;
-    Node deepest;             ///< the node farthest (in steps) from the surface's edge
+    Node deepest;              ///< the node farthest (in steps) from the surface's edge
     bool touches_edge = false; ///< of the grid, or of the data
 };
 

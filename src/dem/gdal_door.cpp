@@ -15,7 +15,9 @@ void CPL_STDCALL keep(CPLErr level, CPLErrorNum, const char* message) {
 
 GdalMessages::GdalMessages() { CPLPushErrorHandlerEx(keep, &kept_); }
 GdalMessages::~GdalMessages() { CPLPopErrorHandler(); }
-std::string GdalMessages::last() const { return kept_.last.empty() ? "no further message" : kept_.last; }
+std::string GdalMessages::last() const {
+    return kept_.last.empty() ? "no further message" : kept_.last;
+}
 
 Arguments::Arguments(std::initializer_list<std::string> words) {
     for (const auto& word : words)

@@ -35,15 +35,18 @@ void ImportOptions::validate() const {
         throw Error("--radius and --bounds exclude each other");
     if (bounds && !(bounds->west_deg < bounds->east_deg && bounds->south_deg < bounds->north_deg &&
                     bounds->south_deg >= -90.0 && bounds->north_deg <= 90.0))
-        throw Error("--bounds must be WEST,SOUTH,EAST,NORTH in degrees, west < east, south < north");
+        throw Error(
+            "--bounds must be WEST,SOUTH,EAST,NORTH in degrees, west < east, south < north");
 }
 
 namespace {
 
 Bounds around(GeoPoint centre, double radius_km) {
-    constexpr double km_per_degree = 111.2; // along a meridian; a little short errs on the wide side
+    constexpr double km_per_degree =
+        111.2; // along a meridian; a little short errs on the wide side
     const double dlat = radius_km / 110.5;
-    const double dlon = radius_km / (km_per_degree * std::max(0.01, std::cos(centre.lat_deg * M_PI / 180)));
+    const double dlon =
+        radius_km / (km_per_degree * std::max(0.01, std::cos(centre.lat_deg * M_PI / 180)));
     return {centre.lon_deg - dlon, std::max(-90.0, centre.lat_deg - dlat), centre.lon_deg + dlon,
             std::min(90.0, centre.lat_deg + dlat)};
 }
@@ -133,8 +136,9 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress) 
         }
     for (const Source& source : sources)
         if (source.input.vertical != sources.front().input.vertical)
-            report.notes.push_back(source.name + ": its vertical datum '" + source.input.vertical +
-                                   "' differs from the first tile's; heights are taken as they are");
+            report.notes.push_back(
+                source.name + ": its vertical datum '" + source.input.vertical +
+                "' differs from the first tile's; heights are taken as they are");
 
     MosaicOptions mosaic_options{.bounds = options.bounds, .spacing_m = options.spacing_m};
     if (options.radius_km)
@@ -153,8 +157,8 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress) 
 
     progress.report(0.66, "finding the lake");
     const Grid<unsigned char> flat = flat_mask(mosaic.elevation_m);
-    report.flat_share = double(std::count(flat.values.begin(), flat.values.end(), 1)) /
-                        double(flat.values.size());
+    report.flat_share =
+        double(std::count(flat.values.begin(), flat.values.end(), 1)) / double(flat.values.size());
     std::optional<Node> seed;
     if (options.at)
         seed = node_at(mosaic, *options.at);
@@ -164,18 +168,21 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress) 
     } else {
         choice.level_m = *options.level_m;
         if (seed) {
-            const auto wet = nearest_wet(mosaic.elevation_m, voids.outside, choice.level_m, *seed, 10);
+            const auto wet =
+                nearest_wet(mosaic.elevation_m, voids.outside, choice.level_m, *seed, 10);
             if (wet && *wet != *seed)
                 report.notes.push_back("--at lies above the level; the nearest node below it, at " +
                                        place(mosaic, *wet) + ", was taken");
             choice.seed = wet.value_or(*seed);
         } else {
-            const auto lake = largest_lake(find_basins(mosaic.elevation_m, voids.outside, choice.level_m));
+            const auto lake =
+                largest_lake(find_basins(mosaic.elevation_m, voids.outside, choice.level_m));
             if (!lake)
                 throw Error(text("nothing lies below the level of ", fixed(choice.level_m, 2),
                                  " m: the ground reaches from ",
                                  fixed(*std::min_element(mosaic.elevation_m.values.begin(),
-                                                         mosaic.elevation_m.values.end()), 2),
+                                                         mosaic.elevation_m.values.end()),
+                                       2),
                                  " m up"),
                             "raise --level, or check its vertical datum");
             choice.seed = lake->seed;
@@ -194,14 +201,18 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress) 
     if (!options.level_m) {
         // A surface that was found flat ends where the flat ends: whole-metre models vary by one.
         bool open = false;
-        const Grid<unsigned char> surface = fill_from(mosaic.elevation_m, voids.outside, choice.level_m,
-                                                      choice.seed, &open, choice.level_m - 1.0);
+        const Grid<unsigned char> surface =
+            fill_from(mosaic.elevation_m, voids.outside, choice.level_m, choice.seed, &open,
+                      choice.level_m - 1.0);
         const auto all = std::count(lake.wet.values.begin(), lake.wet.values.end(), 1);
         const auto kept = std::count(surface.values.begin(), surface.values.end(), 1);
         if (kept < all) {
-            report.notes.push_back(text(all - kept, " nodes more than a metre below the found surface "
-                                        "connect to it (a dam or outlet that the grid does not show); "
-                                        "they were kept dry. --level ", choice.level_m, " floods them"));
+            report.notes.push_back(
+                text(all - kept,
+                     " nodes more than a metre below the found surface "
+                     "connect to it (a dam or outlet that the grid does not show); "
+                     "they were kept dry. --level ",
+                     choice.level_m, " floods them"));
             lake.wet = surface;
             record.open_at_edge = open;
         }
@@ -221,9 +232,9 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress) 
         auto surveys = open_sources(*options.bathymetry, {.crs = "", .nodata = {}});
         surveys.front().input.role = "bathymetry";
         report.inputs.push_back(surveys.front().input);
-        const auto notes =
-            merge_bathymetry(mosaic.elevation_m, lake.wet, choice.level_m,
-                             onto_grid(surveys.front(), mosaic, "bilinear"), options.bathymetry_kind);
+        const auto notes = merge_bathymetry(mosaic.elevation_m, lake.wet, choice.level_m,
+                                            onto_grid(surveys.front(), mosaic, "bilinear"),
+                                            options.bathymetry_kind);
         report.notes.insert(report.notes.end(), notes.begin(), notes.end());
         record.bed = Bed::measured;
     } else {
@@ -234,8 +245,10 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress) 
             const std::size_t lowered =
                 make_room(mosaic.elevation_m, lake.wet, flat, choice.level_m);
             report.notes.push_back(
-                text("bed unknown: ", fixed(100.0 * record.flat_share, 1), " % of the lake is flat in "
-                     "the DEM, which holds the water's surface. ", lowered,
+                text("bed unknown: ", fixed(100.0 * record.flat_share, 1),
+                     " % of the lake is flat in "
+                     "the DEM, which holds the water's surface. ",
+                     lowered,
                      " nodes were lowered nominally so that water has room; that is no depth. Give "
                      "--bathymetry for a real bed"));
         }
@@ -247,7 +260,8 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress) 
     out.ground.north_m = mosaic.north_m;
     const std::size_t raised = separate(out.ground, lake);
     if (raised > 0)
-        report.notes.push_back(text(raised, " nodes beside the water (no data, or below a dam) were "
+        report.notes.push_back(text(raised,
+                                    " nodes beside the water (no data, or below a dam) were "
                                     "raised to just above the level, where the lake ends"));
     measure(record, out.ground, lake.wet, mosaic.frame);
     out.water = water_surface(out.ground, std::span(&lake, 1));

@@ -23,9 +23,9 @@ enum class BedChoice { automatic, measured, unknown };
 /// Every field's default is what `tarn import --help` prints.
 struct ImportOptions {
     std::vector<std::filesystem::path> dems;
-    std::optional<double> level_m;      ///< nothing = find the water surface
-    std::optional<GeoPoint> at;         ///< a point in (or near) the lake
-    std::optional<double> radius_km;    ///< around `at`, (0, 500]
+    std::optional<double> level_m;   ///< nothing = find the water surface
+    std::optional<GeoPoint> at;      ///< a point in (or near) the lake
+    std::optional<double> radius_km; ///< around `at`, (0, 500]
     std::optional<Bounds> bounds;
     std::optional<std::filesystem::path> bathymetry;
     BathymetryKind bathymetry_kind = BathymetryKind::automatic;

@@ -136,8 +136,8 @@ Dataset join(const std::vector<Source*>& tiles) {
         handles.push_back(GDALDataset::ToHandle(tile->raster.get()));
     Arguments arguments{"-vrtnodata", "-32768"}; // each tile's own nodata is honoured as well
     GDALBuildVRTOptions* options = GDALBuildVRTOptionsNew(arguments.get(), nullptr);
-    Dataset vrt(GDALDataset::FromHandle(GDALBuildVRT("", int(handles.size()), handles.data(),
-                                                     nullptr, options, nullptr)));
+    Dataset vrt(GDALDataset::FromHandle(
+        GDALBuildVRT("", int(handles.size()), handles.data(), nullptr, options, nullptr)));
     GDALBuildVRTOptionsFree(options);
     if (!vrt)
         throw Error("the tiles cannot be joined (" + messages.last() + ")");
@@ -197,11 +197,30 @@ Grid<float> warp(const std::vector<GDALDataset*>& inputs, const Target& target,
     std::vector<GDALDatasetH> handles;
     for (GDALDataset* input : inputs)
         handles.push_back(GDALDataset::ToHandle(input));
-    Arguments arguments{"-of", "MEM", "-ot", "Float32", "-t_srs", target.wkt, "-te",
-                        text(target.box.west), text(target.box.south), text(target.box.east),
-                        text(target.box.north), "-ts", text(target.size.cols),
-                        text(target.size.rows), "-r", resampling, "-dstnodata", "nan", "-et",
-                        "0.02", "-multi", "-wo", "NUM_THREADS=ALL_CPUS", "-novshiftgrid"};
+    Arguments arguments{"-of",
+                        "MEM",
+                        "-ot",
+                        "Float32",
+                        "-t_srs",
+                        target.wkt,
+                        "-te",
+                        text(target.box.west),
+                        text(target.box.south),
+                        text(target.box.east),
+                        text(target.box.north),
+                        "-ts",
+                        text(target.size.cols),
+                        text(target.size.rows),
+                        "-r",
+                        resampling,
+                        "-dstnodata",
+                        "nan",
+                        "-et",
+                        "0.02",
+                        "-multi",
+                        "-wo",
+                        "NUM_THREADS=ALL_CPUS",
+                        "-novshiftgrid"};
     GDALWarpAppOptions* options = GDALWarpAppOptionsNew(arguments.get(), nullptr);
     GdalProgress watcher(progress, what, from, to);
     GDALWarpAppOptionsSetProgress(options, &GdalProgress::callback, &watcher);
@@ -220,8 +239,8 @@ void refuse_too_large(GridSize size, const MosaicOptions& options) {
         throw Error(text("the region is only ", size.cols, " x ", size.rows, " nodes"),
                     "choose a larger --radius or --bounds, or a finer --spacing");
     if (size.cols > options.max_side || size.rows > options.max_side)
-        throw Error(text("the scene would have ", size.cols, " x ", size.rows,
-                         " nodes, more than ", options.max_side, " a side"),
+        throw Error(text("the scene would have ", size.cols, " x ", size.rows, " nodes, more than ",
+                         options.max_side, " a side"),
                     "cut it with --at and --radius, or choose a coarser --spacing");
 }
 
@@ -230,8 +249,9 @@ Extent wanted_extent(const Extent& available, const std::optional<Bounds>& bound
     if (!bounds)
         return available;
     auto to = between(wgs84(), crs);
-    const Extent asked = image_of(
-        {bounds->west_deg, bounds->south_deg, bounds->east_deg, bounds->north_deg}, *to, "--bounds");
+    const Extent asked =
+        image_of({bounds->west_deg, bounds->south_deg, bounds->east_deg, bounds->north_deg}, *to,
+                 "--bounds");
     const Extent both = asked.clipped_to(available);
     if (both.empty())
         throw Error("the region asked for lies outside the elevation data",
@@ -312,7 +332,8 @@ Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
     Extent region = wanted_extent(all, options.bounds, wgs84());
 
     Mosaic out;
-    out.frame = geo::local_frame({(region.south + region.north) / 2, (region.west + region.east) / 2});
+    out.frame =
+        geo::local_frame({(region.south + region.north) / 2, (region.west + region.east) / 2});
     OGRSpatialReference local;
     local.SetFromUserInput(out.frame.proj.c_str());
     local.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
@@ -355,7 +376,8 @@ Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
     target.size = {int(std::clamp(std::ceil((box.east - box.west) / spacing), 0.0, 1e8)),
                    int(std::clamp(std::ceil((box.north - box.south) / spacing), 0.0, 1e8))};
     refuse_too_large(target.size, options);
-    const double cx = std::round((box.west + box.east) / 2), cy = std::round((box.south + box.north) / 2);
+    const double cx = std::round((box.west + box.east) / 2),
+                 cy = std::round((box.south + box.north) / 2);
     target.box = {cx - 0.5 * target.size.cols * spacing, cy - 0.5 * target.size.rows * spacing,
                   cx + 0.5 * target.size.cols * spacing, cy + 0.5 * target.size.rows * spacing};
     target.wkt = out.frame.wkt;
@@ -390,8 +412,9 @@ Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
     out.resampling = text(resampling, " from ", fixed(native, 2), " m to ", fixed(spacing, 2),
                           " m; flat water surfaces by nearest neighbour");
     if (groups.size() > 1)
-        out.notes.push_back(text(groups.size(), " grids out of phase with each other were resampled "
-                                                "onto one; where they overlap the last one counts"));
+        out.notes.push_back(text(groups.size(),
+                                 " grids out of phase with each other were resampled "
+                                 "onto one; where they overlap the last one counts"));
 
     // Water surfaces: nearest neighbour, so that level and area stay (see the header).
     std::vector<Dataset> flats;
@@ -409,7 +432,8 @@ Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
         int c0 = 0, r0 = 0, c1 = inputs[i]->GetRasterXSize(), r1 = inputs[i]->GetRasterYSize();
         if (g[2] == 0.0 && g[4] == 0.0) {
             const double ca = (source_box.west - g[0]) / g[1], cb = (source_box.east - g[0]) / g[1];
-            const double ra = (source_box.south - g[3]) / g[5], rb = (source_box.north - g[3]) / g[5];
+            const double ra = (source_box.south - g[3]) / g[5],
+                         rb = (source_box.north - g[3]) / g[5];
             c0 = std::max(c0, int(std::floor(std::min(ca, cb))) - 2);
             c1 = std::min(c1, int(std::ceil(std::max(ca, cb))) + 2);
             r0 = std::max(r0, int(std::floor(std::min(ra, rb))) - 2);
@@ -460,8 +484,8 @@ std::optional<geo::Frame> transverse_mercator(const OGRSpatialReference& crs) {
     // GDAL gives angles in the CRS's own unit, counted from its prime meridian.
     const double to_deg = plane.GetAngularUnits() * 180.0 / M_PI;
     frame.lat0_deg = plane.GetProjParm(SRS_PP_LATITUDE_OF_ORIGIN, 0.0) * to_deg;
-    frame.lon0_deg = plane.GetProjParm(SRS_PP_CENTRAL_MERIDIAN, 0.0) * to_deg +
-                     plane.GetPrimeMeridian();
+    frame.lon0_deg =
+        plane.GetProjParm(SRS_PP_CENTRAL_MERIDIAN, 0.0) * to_deg + plane.GetPrimeMeridian();
     frame.scale0 = plane.GetProjParm(SRS_PP_SCALE_FACTOR, 1.0);
     frame.false_easting_m = plane.GetProjParm(SRS_PP_FALSE_EASTING, 0.0);
     frame.false_northing_m = plane.GetProjParm(SRS_PP_FALSE_NORTHING, 0.0);
@@ -494,8 +518,9 @@ double sample_datum_shift(geo::Frame& frame, const OGRSpatialReference& crs, dou
             greatest = std::max(greatest, std::hypot(d.x_m, d.y_m));
         }
     if (greatest > 5'000.0)
-        throw Error(text("PROJ and the CRS's own parameters disagree by ", fixed(greatest, 1), " m"),
-                    "the CRS text may be damaged: give it again with --crs EPSG:...");
+        throw Error(
+            text("PROJ and the CRS's own parameters disagree by ", fixed(greatest, 1), " m"),
+            "the CRS text may be damaged: give it again with --crs EPSG:...");
     if (greatest < 0.0005)
         return greatest; // the same datum as far as anyone can tell
     double error = 0.0;
@@ -506,7 +531,8 @@ double sample_datum_shift(geo::Frame& frame, const OGRSpatialReference& crs, dou
             const auto mean = [&](const std::vector<double>& v) {
                 return 0.25 * (v[i] + v[i + 1] + v[i + n] + v[i + n + 1]);
             };
-            error = std::max(error, std::hypot(mean(datum.east_m) - d.x_m, mean(datum.north_m) - d.y_m));
+            error = std::max(error,
+                             std::hypot(mean(datum.east_m) - d.x_m, mean(datum.north_m) - d.y_m));
         }
     frame.datum_shift = std::move(datum);
     return error;
@@ -521,10 +547,10 @@ Mosaic build_mosaic(std::vector<Source>& sources, const MosaicOptions& options,
     const auto projection = transverse_mercator(first.crs);
     const double drift = std::abs(g[1] + g[5]) * std::max(first.cols, first.rows);
     const bool square = first.transform.north_up() && drift < 0.01 * g[1];
-    const bool one_grid = std::all_of(sources.begin(), sources.end(), [&](const Source& s) {
-        return in_phase(first, s);
-    });
-    const bool same_spacing = !options.spacing_m || std::abs(*options.spacing_m / g[1] - 1.0) < 1e-6;
+    const bool one_grid = std::all_of(sources.begin(), sources.end(),
+                                      [&](const Source& s) { return in_phase(first, s); });
+    const bool same_spacing =
+        !options.spacing_m || std::abs(*options.spacing_m / g[1] - 1.0) < 1e-6;
     if (projection && square && one_grid && same_spacing)
         return keep_grid(sources, options, *projection, progress);
     return warp_to_local(sources, options, progress);

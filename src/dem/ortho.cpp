@@ -15,8 +15,8 @@ namespace {
 Dataset translate(GDALDataset& from, Arguments& arguments, const std::string& name) {
     GdalMessages messages;
     GDALTranslateOptions* options = GDALTranslateOptionsNew(arguments.get(), nullptr);
-    Dataset out(GDALDataset::FromHandle(
-        GDALTranslate("", GDALDataset::ToHandle(&from), options, nullptr)));
+    Dataset out(
+        GDALDataset::FromHandle(GDALTranslate("", GDALDataset::ToHandle(&from), options, nullptr)));
     GDALTranslateOptionsFree(options);
     if (!out)
         throw Error(name + ": cannot be read as a picture (" + messages.last() + ")");
@@ -55,9 +55,9 @@ Ortho warp_ortho(Source& source, const geo::Frame& frame, const Heightfield& gro
         double suggested[6];
         int cols = 0, rows = 0;
         double extent[4];
-        if (!transformer || GDALSuggestedWarpOutput2(GDALDataset::ToHandle(input),
-                                                     GDALGenImgProjTransform, transformer, suggested,
-                                                     &cols, &rows, extent, 0) != CE_None)
+        if (!transformer ||
+            GDALSuggestedWarpOutput2(GDALDataset::ToHandle(input), GDALGenImgProjTransform,
+                                     transformer, suggested, &cols, &rows, extent, 0) != CE_None)
             throw Error(source.name + ": cannot be placed in the scene (" + messages.last() + ")",
                         "check its CRS");
         GDALDestroyGenImgProjTransformer(transformer);
@@ -72,10 +72,24 @@ Ortho warp_ortho(Source& source, const geo::Frame& frame, const Heightfield& gro
     const double spacing = std::max(native, std::max(east - west, north - south) / 8192.0);
     const int cols = std::max(1, int(std::ceil((east - west) / spacing)));
     const int rows = std::max(1, int(std::ceil((north - south) / spacing)));
-    Arguments arguments{"-of", "MEM", "-t_srs", frame.wkt, "-te", text(west), text(north - rows * spacing),
-                        text(west + cols * spacing), text(north), "-ts", text(cols), text(rows),
-                        "-r", spacing > 1.5 * native ? "average" : "bilinear", "-dstalpha", "-multi",
-                        "-wo", "NUM_THREADS=ALL_CPUS"};
+    Arguments arguments{"-of",
+                        "MEM",
+                        "-t_srs",
+                        frame.wkt,
+                        "-te",
+                        text(west),
+                        text(north - rows * spacing),
+                        text(west + cols * spacing),
+                        text(north),
+                        "-ts",
+                        text(cols),
+                        text(rows),
+                        "-r",
+                        spacing > 1.5 * native ? "average" : "bilinear",
+                        "-dstalpha",
+                        "-multi",
+                        "-wo",
+                        "NUM_THREADS=ALL_CPUS"};
     GDALWarpAppOptions* options = GDALWarpAppOptionsNew(arguments.get(), nullptr);
     GdalProgress watcher(progress, "draping the picture", 0.85, 0.95);
     GDALWarpAppOptionsSetProgress(options, &GdalProgress::callback, &watcher);
@@ -96,7 +110,8 @@ Ortho warp_ortho(Source& source, const geo::Frame& frame, const Heightfield& gro
     for (int channel = 0; channel < 4; ++channel) {
         const int band = channel == 3 ? bands : bands >= 4 ? channel + 1 : 1;
         if (out->GetRasterBand(band)->RasterIO(GF_Read, 0, 0, cols, rows, bytes.data() + channel,
-                                               cols, rows, GDT_Byte, 4, GSpacing(cols) * 4) != CE_None)
+                                               cols, rows, GDT_Byte, 4,
+                                               GSpacing(cols) * 4) != CE_None)
             throw Error(source.name + ": cannot be read (" + messages.last() + ")");
     }
     return ortho;

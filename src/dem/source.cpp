@@ -72,8 +72,8 @@ std::vector<std::string> expand(const fs::path& path) {
     const CPLStringList names(VSIReadDirRecursive(inside.c_str()));
     for (int i = 0; i < names.size(); ++i) {
         const std::string member = inside + "/" + names[i];
-        if (member.ends_with("/") || !GDALIdentifyDriverEx(member.c_str(), GDAL_OF_RASTER, nullptr,
-                                                           nullptr))
+        if (member.ends_with("/") ||
+            !GDALIdentifyDriverEx(member.c_str(), GDAL_OF_RASTER, nullptr, nullptr))
             continue;
         out.push_back(member);
     }
@@ -114,7 +114,8 @@ Source open_one(const std::string& path, const std::string& crs, bool needs_crs)
     source.crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     if (needs_crs && source.crs.IsEmpty())
         throw Error(source.name + ": no CRS", "give one with --crs EPSG:...");
-    if (source.crs.IsLocal() || (needs_crs && !source.crs.IsProjected() && !source.crs.IsGeographic()))
+    if (source.crs.IsLocal() ||
+        (needs_crs && !source.crs.IsProjected() && !source.crs.IsGeographic()))
         throw Error(source.name + ": its CRS '" + describe(source.crs) +
                         "' does not say where on Earth it is",
                     "give one with --crs EPSG:...");
@@ -124,7 +125,9 @@ Source open_one(const std::string& path, const std::string& crs, bool needs_crs)
     for (double v : source.transform.v)
         if (!std::isfinite(v))
             throw Error(source.name + ": its geotransform is not finite", "georeference it again");
-    if (source.transform.v[1] * source.transform.v[5] - source.transform.v[2] * source.transform.v[4] == 0.0)
+    if (source.transform.v[1] * source.transform.v[5] -
+            source.transform.v[2] * source.transform.v[4] ==
+        0.0)
         throw Error(source.name + ": its geotransform has no area", "georeference it again");
     if (source.crs.IsGeographic() && !source.crs.IsProjected()) {
         const double* g = source.transform.v;
@@ -155,7 +158,8 @@ void to_metres(Source& source, const std::optional<double>& nodata) {
     GdalMessages messages;
     GDALDataset& ds = *source.original;
     GDALRasterBand& band = *ds.GetRasterBand(1);
-    if (band.GetColorInterpretation() == GCI_RedBand || band.GetColorInterpretation() == GCI_PaletteIndex ||
+    if (band.GetColorInterpretation() == GCI_RedBand ||
+        band.GetColorInterpretation() == GCI_PaletteIndex ||
         (ds.GetRasterCount() >= 3 && band.GetRasterDataType() == GDT_Byte))
         throw Error(source.name + ": is a picture, not elevations", "give it with --ortho");
     if (GDALDataTypeIsComplex(band.GetRasterDataType()))
@@ -185,8 +189,8 @@ void to_metres(Source& source, const std::optional<double>& nodata) {
         arguments.add(text(*nodata));
     }
     GDALTranslateOptions* options = GDALTranslateOptionsNew(arguments.get(), nullptr);
-    Dataset view(GDALDataset::FromHandle(
-        GDALTranslate("", GDALDataset::ToHandle(&ds), options, nullptr)));
+    Dataset view(
+        GDALDataset::FromHandle(GDALTranslate("", GDALDataset::ToHandle(&ds), options, nullptr)));
     GDALTranslateOptionsFree(options);
     if (!view)
         throw Error(source.name + ": cannot be read (" + messages.last() + ")");

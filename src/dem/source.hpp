@@ -28,8 +28,8 @@ struct Source {
 };
 
 struct SourceOptions {
-    std::string crs;                ///< used for every raster instead of its own; "" keeps it
-    std::optional<double> nodata;   ///< used for every raster besides its own
+    std::string crs;              ///< used for every raster instead of its own; "" keeps it
+    std::optional<double> nodata; ///< used for every raster besides its own
     bool needs_crs = true;
 };
 

@@ -9,12 +9,14 @@ namespace tarn::dem {
 
 namespace {
 
-double shoreline_length_m(double level_m, const Heightfield& ground,
-                          const Grid<unsigned char>& wet, Node low, Node high) {
+double shoreline_length_m(double level_m, const Heightfield& ground, const Grid<unsigned char>& wet,
+                          Node low, Node high) {
     double length = 0.0;
     const double s = ground.spacing_m;
-    for (int row = std::max(low.row - 1, 0); row < std::min(high.row + 1, ground.size().rows - 1); ++row)
-        for (int col = std::max(low.col - 1, 0); col < std::min(high.col + 1, ground.size().cols - 1); ++col) {
+    for (int row = std::max(low.row - 1, 0); row < std::min(high.row + 1, ground.size().rows - 1);
+         ++row)
+        for (int col = std::max(low.col - 1, 0);
+             col < std::min(high.col + 1, ground.size().cols - 1); ++col) {
             // Corners clockwise from the north-west.
             const Node corner[4] = {{col, row}, {col + 1, row}, {col + 1, row + 1}, {col, row + 1}};
             bool is_wet[4];
@@ -60,8 +62,10 @@ int count_islands(const Grid<unsigned char>& wet, Node low, Node high) {
         seen[from] = 1;
         for (std::size_t i = 0; i < queue.size(); ++i) {
             const Node at = queue[i];
-            const Node next[4] = {{at.col - 1, at.row}, {at.col + 1, at.row},
-                                  {at.col, at.row - 1}, {at.col, at.row + 1}};
+            const Node next[4] = {{at.col - 1, at.row},
+                                  {at.col + 1, at.row},
+                                  {at.col, at.row - 1},
+                                  {at.col, at.row + 1}};
             for (const Node n : next)
                 if (seen.contains(n) && !seen[n] && !is_wet(n)) {
                     seen[n] = 1;

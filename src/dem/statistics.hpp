@@ -1,5 +1,6 @@
 #pragma once
-/// @file statistics.hpp  Area, volume, depths, shoreline and islands, from the nodes that are drawn.
+/// @file statistics.hpp  Area, volume, depths, shoreline and islands, from the nodes that are
+/// drawn.
 #include "core/heightfield.hpp"
 #include "core/lake_record.hpp"
 #include "geo/frame_data.hpp"

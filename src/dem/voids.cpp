@@ -98,8 +98,8 @@ Voids fill_voids(Grid<float>& z) {
     }
     for (std::size_t i = 0; i < queue.size(); ++i) {
         const Node at = queue[i];
-        const Node next[4] = {{at.col - 1, at.row}, {at.col + 1, at.row},
-                              {at.col, at.row - 1}, {at.col, at.row + 1}};
+        const Node next[4] = {
+            {at.col - 1, at.row}, {at.col + 1, at.row}, {at.col, at.row - 1}, {at.col, at.row + 1}};
         for (const Node n : next)
             if (z.contains(n))
                 push(n);

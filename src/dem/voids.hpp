@@ -7,9 +7,9 @@
 namespace tarn::dem {
 
 struct Voids {
-    Grid<unsigned char> outside;     ///< 1 where a void is open to the grid's edge
-    std::uint64_t count = 0;         ///< all void nodes
-    std::uint64_t inside = 0;        ///< of these, enclosed by data: interpolated
+    Grid<unsigned char> outside; ///< 1 where a void is open to the grid's edge
+    std::uint64_t count = 0;     ///< all void nodes
+    std::uint64_t inside = 0;    ///< of these, enclosed by data: interpolated
 };
 
 /// Replaces every NaN: enclosed voids by inverse-distance interpolation from their rim

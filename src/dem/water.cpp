@@ -60,7 +60,8 @@ std::size_t separate(Heightfield& ground, const WetLake& lake) {
     std::size_t raised = 0;
     const double exact = (lake.level_m - ground.offset_m) / ground.scale_m;
     const auto below = static_cast<std::uint16_t>(std::clamp(std::ceil(exact) - 1.0, 0.0, 65535.0));
-    const auto above = static_cast<std::uint16_t>(std::clamp(std::floor(exact) + 1.0, 0.0, 65535.0));
+    const auto above =
+        static_cast<std::uint16_t>(std::clamp(std::floor(exact) + 1.0, 0.0, 65535.0));
     for (int row = 0; row < ground.size().rows; ++row)
         for (int col = 0; col < ground.size().cols; ++col) {
             const Node at{col, row};

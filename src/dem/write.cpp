@@ -65,10 +65,9 @@ void write_heightfield(const std::filesystem::path& path, const Heightfield& fie
     band.SetDescription(description.c_str());
     if (nodata_zero)
         band.SetNoDataValue(no_water_code);
-    const CPLErr written = band.RasterIO(
-        GF_Write, 0, 0, field.size().cols, field.size().rows,
-        const_cast<std::uint16_t*>(field.codes.values.data()), field.size().cols,
-        field.size().rows, GDT_UInt16, 0, 0);
+    const CPLErr written = band.RasterIO(GF_Write, 0, 0, field.size().cols, field.size().rows,
+                                         const_cast<std::uint16_t*>(field.codes.values.data()),
+                                         field.size().cols, field.size().rows, GDT_UInt16, 0, 0);
     finish(std::move(out), path, written, messages);
 }
 
@@ -79,10 +78,9 @@ void write_ortho(const std::filesystem::path& path, const Ortho& ortho, const ge
     auto out = create(path, {p.width_px, p.height_px}, 4, GDT_Byte,
                       geo_transform(frame, ortho.west_m + s / 2, ortho.north_m - s / 2, s),
                       frame.wkt, true, messages);
-    const CPLErr written =
-        out->RasterIO(GF_Write, 0, 0, p.width_px, p.height_px,
-                      const_cast<std::uint8_t*>(p.bytes.data()), p.width_px, p.height_px, GDT_Byte,
-                      4, nullptr, 4, GSpacing(p.width_px) * 4, 1, nullptr);
+    const CPLErr written = out->RasterIO(
+        GF_Write, 0, 0, p.width_px, p.height_px, const_cast<std::uint8_t*>(p.bytes.data()),
+        p.width_px, p.height_px, GDT_Byte, 4, nullptr, 4, GSpacing(p.width_px) * 4, 1, nullptr);
     finish(std::move(out), path, written, messages);
 }
 

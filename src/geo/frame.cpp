@@ -36,13 +36,16 @@ ScenePoint shift(const DatumShift& datum, double x, double y) {
     if (datum.side < 2)
         return {};
     const double cells = datum.side - 1;
-    const double c = (x / datum.reach_m + 1.0) * 0.5 * cells, r = (y / datum.reach_m + 1.0) * 0.5 * cells;
-    const double c0 = std::clamp(std::floor(c), 0.0, cells - 1.0), r0 = std::clamp(std::floor(r), 0.0, cells - 1.0);
+    const double c = (x / datum.reach_m + 1.0) * 0.5 * cells,
+                 r = (y / datum.reach_m + 1.0) * 0.5 * cells;
+    const double c0 = std::clamp(std::floor(c), 0.0, cells - 1.0),
+                 r0 = std::clamp(std::floor(r), 0.0, cells - 1.0);
     const double u = c - c0, v = r - r0;
     const auto at = [&](const std::vector<double>& values) {
         const auto i = std::size_t(r0) * std::size_t(datum.side) + std::size_t(c0);
         const auto n = std::size_t(datum.side);
-        return (1 - v) * ((1 - u) * values[i] + u * values[i + 1]) + v * ((1 - u) * values[i + n] + u * values[i + n + 1]);
+        return (1 - v) * ((1 - u) * values[i] + u * values[i + 1]) +
+               v * ((1 - u) * values[i + n] + u * values[i + n + 1]);
     };
     return {at(datum.east_m), at(datum.north_m)};
 }

@@ -13,8 +13,8 @@
 namespace tarn::geo {
 
 SunPosition sun_position(GeoPoint place, double julian_date_utc) {
-    // libnova gives the sun in the frame of J2000, but counts hour angles in that of the date: without
-    // precession the sun would stand .36 degree off in 2026.
+    // libnova gives the sun in the frame of J2000, but counts hour angles in that of the date:
+    // without precession the sun would stand .36 degree off in 2026.
     ln_equ_posn j2000{}, equatorial{};
     ln_get_solar_equ_coords(julian_date_utc, &j2000);
     ln_get_equ_prec(&j2000, julian_date_utc, &equatorial);
@@ -54,7 +54,8 @@ double parse_time(const std::string& iso8601, GeoPoint place) {
     if (zone == "Z")
         return jd;
     const double sign = zone[0] == '-' ? -1.0 : 1.0;
-    const double hours = std::stod(zone.substr(1, 2)) + std::stod(zone.substr(zone.size() - 2)) / 60;
+    const double hours =
+        std::stod(zone.substr(1, 2)) + std::stod(zone.substr(zone.size() - 2)) / 60;
     return jd - sign * hours / 24.0;
 }
 

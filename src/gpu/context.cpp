@@ -33,7 +33,8 @@ std::vector<Way> ways() {
                            return eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA,
                                                         EGL_DEFAULT_DISPLAY, nullptr);
                        }});
-    const auto query = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
+    const auto query =
+        reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
     if (query && extensions.find("EGL_EXT_platform_device") != std::string::npos) {
         EGLDeviceEXT devices[16];
         EGLint count = 0;
@@ -54,15 +55,20 @@ EGLContext create(EGLDisplay display, std::string& why) {
         why = "no desktop OpenGL (" + egl_error() + ")";
         return nullptr;
     }
-    const EGLint wanted_config[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0, EGL_NONE};
+    const EGLint wanted_config[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0,
+                                    EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
     if (!eglChooseConfig(display, wanted_config, &config, 1, &count) || count == 0) {
         why = "no OpenGL configuration (" + egl_error() + ")";
         return nullptr;
     }
-    const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
-                             EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+    const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
+                             4,
+                             EGL_CONTEXT_MINOR_VERSION,
+                             5,
+                             EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                              EGL_NONE};
     EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, wanted);
     if (!context) {

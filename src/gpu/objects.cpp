@@ -11,8 +11,8 @@ Texture2D::Texture2D(GLenum format, int width_px, int height_px, int levels, Fil
     GLint limit = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
     if (width_px < 1 || height_px < 1 || width_px > limit || height_px > limit)
-        throw Error(text(label, " is ", width_px, " x ", height_px, ", this GPU allows up to ", limit,
-                         " a side"),
+        throw Error(text(label, " is ", width_px, " x ", height_px, ", this GPU allows up to ",
+                         limit, " a side"),
                     "use a smaller picture, or import a smaller or coarser scene");
     GLuint id = 0;
     glCreateTextures(GL_TEXTURE_2D, 1, &id);
@@ -21,11 +21,13 @@ Texture2D::Texture2D(GLenum format, int width_px, int height_px, int levels, Fil
     if (glGetError() == GL_OUT_OF_MEMORY)
         throw Error(text("out of GPU memory for ", label, " of ", width_px, " x ", height_px),
                     "use a smaller picture, or import a smaller or coarser scene");
-    const GLint minify = filter == Filter::nearest    ? (levels > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST)
-                         : filter == Filter::linear   ? GL_LINEAR
-                                                      : GL_LINEAR_MIPMAP_LINEAR;
+    const GLint minify = filter == Filter::nearest
+                             ? (levels > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST)
+                         : filter == Filter::linear ? GL_LINEAR
+                                                    : GL_LINEAR_MIPMAP_LINEAR;
     glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, minify);
-    glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, filter == Filter::nearest ? GL_NEAREST : GL_LINEAR);
+    glTextureParameteri(id, GL_TEXTURE_MAG_FILTER,
+                        filter == Filter::nearest ? GL_NEAREST : GL_LINEAR);
     glTextureParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     glObjectLabel(GL_TEXTURE, id, static_cast<GLsizei>(label.size()), label.c_str());

@@ -24,7 +24,8 @@ std::string read_text(const fs::path& path, const std::string& asked_by) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-void paste(const fs::path& root, const std::string& file, const std::string& body, ShaderSource& out) {
+void paste(const fs::path& root, const std::string& file, const std::string& body,
+           ShaderSource& out) {
     static const std::regex include(R"re(^\s*#include\s+"([^"]+)"\s*$)re");
     const auto index = out.files.size();
     out.files.push_back(file);
@@ -107,8 +108,9 @@ ComputeProgram::ComputeProgram(const ShaderSource& source) {
     GLsizei length = 0;
     glGetProgramInfoLog(id(), static_cast<GLsizei>(log.size()), &length, log.data());
     log.resize(static_cast<std::size_t>(length));
-    throw Error("shader " + source.files.front() + " does not compile: " + name_files(log, source),
-                "this is a fault of tarn or of the GL driver: please report it with tarn doctor's output");
+    throw Error(
+        "shader " + source.files.front() + " does not compile: " + name_files(log, source),
+        "this is a fault of tarn or of the GL driver: please report it with tarn doctor's output");
 }
 
 } // namespace tarn::gpu

@@ -26,7 +26,8 @@ ShaderSource load_shader(const std::filesystem::path& root, const std::string& e
 ShaderSource expand_shader(const std::filesystem::path& root, const std::string& code,
                            const std::string& name);
 
-/// Rewrites driver messages "N(L)" / "N:L(" to "lib/fresnel.glsl:L", so that editors can jump there.
+/// Rewrites driver messages "N(L)" / "N:L(" to "lib/fresnel.glsl:L", so that editors can jump
+/// there.
 std::string name_files(const std::string& driver_log, const ShaderSource& source);
 
 class ComputeProgram {

@@ -13,13 +13,14 @@ namespace {
 
 void require_same_size(const Image& a, const Image& b) {
     if (a.width_px != b.width_px || a.height_px != b.height_px)
-        throw Error(text("pictures are ", a.width_px, " x ", a.height_px, " and ", b.width_px, " x ",
-                         b.height_px));
+        throw Error(text("pictures are ", a.width_px, " x ", a.height_px, " and ", b.width_px,
+                         " x ", b.height_px));
 }
 
 double percentile(std::vector<double> values, double share) {
-    const auto at = values.begin() +
-                    std::ptrdiff_t(std::min(values.size() - 1, std::size_t(share * double(values.size()))));
+    const auto at =
+        values.begin() +
+        std::ptrdiff_t(std::min(values.size() - 1, std::size_t(share * double(values.size()))));
     std::nth_element(values.begin(), at, values.end());
     return *at;
 }
@@ -79,10 +80,13 @@ DistanceDifference compare_distances(const Image& got, const Image& expected, do
             const double a = at(got, x, y), b = at(expected, x, y);
             bool edge = false;
             const auto near = [&](int dx, int dy) {
-                return 1.0 / at(expected, std::clamp(x + dx, 0, w - 1), std::clamp(y + dy, 0, h - 1)); // sky: 0
+                return 1.0 / at(expected, std::clamp(x + dx, 0, w - 1),
+                                std::clamp(y + dy, 0, h - 1)); // sky: 0
             };
-            for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{0, 1}, std::pair{1, 1}, std::pair{1, -1}}) {
-                if (x + dx >= w || x - dx < 0 || y + dy >= h || y + dy < 0 || y - dy < 0 || y - dy >= h)
+            for (const auto& [dx, dy] :
+                 {std::pair{1, 0}, std::pair{0, 1}, std::pair{1, 1}, std::pair{1, -1}}) {
+                if (x + dx >= w || x - dx < 0 || y + dy >= h || y + dy < 0 || y - dy < 0 ||
+                    y - dy >= h)
                     continue;
                 const double a1 = near(dx, dy), b1 = near(-dx, -dy), c1 = near(0, 0);
                 edge |= std::abs(a1 + b1 - 2.0 * c1) > 0.02 * std::max({a1, b1, c1});

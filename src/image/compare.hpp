@@ -9,17 +9,17 @@ namespace tarn::image {
 /// floor is a thousandth of the reference's mean radiance, so that black pixels do not rule.
 struct Difference {
     double mean_relative = 0.0, p95_relative = 0.0, p99_relative = 0.0, max_relative = 0.0;
-    double psnr_db = 0.0;          ///< peak = the reference's 99th percentile; infinity when equal
-    std::size_t worst_pixel = 0;   ///< index of the greatest relative error
-    bool finite = true;            ///< false if a value of either is not finite: never a pass
+    double psnr_db = 0.0;        ///< peak = the reference's 99th percentile; infinity when equal
+    std::size_t worst_pixel = 0; ///< index of the greatest relative error
+    bool finite = true;          ///< false if a value of either is not finite: never a pass
 };
 
 /// @throws tarn::Error  if the sizes differ
 Difference compare(const Image& got, const Image& expected);
 
-/// First-hit distances: pixels that differ by more than max(quantum_m, share * distance); sky beside
-/// no sky is different too. 1/distance is linear over the picture of a plane, however grazing, so an
-/// edge is where its second difference exceeds 2 % of it.
+/// First-hit distances: pixels that differ by more than max(quantum_m, share * distance); sky
+/// beside no sky is different too. 1/distance is linear over the picture of a plane, however
+/// grazing, so an edge is where its second difference exceeds 2 % of it.
 struct DistanceDifference {
     std::size_t pixels = 0;
     std::size_t edges = 0;     ///< beside an outline or sharp crease of the reference: not judged

@@ -46,7 +46,8 @@ void write_image(const fs::path& path, OIIO::ImageSpec spec, OIIO::TypeDesc type
     OIIO::Filesystem::IOVecOutput encoded;
     if (!out || !out->set_ioproxy(&encoded) || !out->open(path.string(), spec) ||
         !out->write_image(type, data) || !out->close())
-        throw Error("the picture cannot be encoded (" + (out ? out->geterror() : OIIO::geterror()) + ")",
+        throw Error("the picture cannot be encoded (" + (out ? out->geterror() : OIIO::geterror()) +
+                        ")",
                     "choose a smaller picture");
     std::ofstream file(path, std::ios::binary);
     file.write(reinterpret_cast<const char*>(encoded.buffer().data()),
@@ -63,18 +64,22 @@ std::unique_ptr<OIIO::ImageInput> open(const fs::path& path) {
     auto in = OIIO::ImageInput::open(path.string());
     if (!in) {
         const std::string why = OIIO::geterror();
-        throw Error(path.string() + ": cannot be read (" + why + ")", "check that it exists and is whole");
+        throw Error(path.string() + ": cannot be read (" + why + ")",
+                    "check that it exists and is whole");
     }
     const OIIO::ImageSpec& spec = in->spec();
-    if (spec.width < 1 || spec.height < 1 || spec.width > 65536 || spec.height > 65536 || spec.depth > 1)
-        throw Error(text(path.string(), ": is ", spec.width, " x ", spec.height, ", not a usable size"));
+    if (spec.width < 1 || spec.height < 1 || spec.width > 65536 || spec.height > 65536 ||
+        spec.depth > 1)
+        throw Error(
+            text(path.string(), ": is ", spec.width, " x ", spec.height, ", not a usable size"));
     return in;
 }
 
 } // namespace
 
 void write_png(const fs::path& path, const Picture& picture, const Metadata& metadata) {
-    OIIO::ImageSpec spec(picture.width_px, picture.height_px, picture.channels, OIIO::TypeDesc::UINT8);
+    OIIO::ImageSpec spec(picture.width_px, picture.height_px, picture.channels,
+                         OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
     spec.attribute("png:compressionLevel", 6);
     write_beside(path, [&](const fs::path& partial) {
@@ -126,10 +131,12 @@ Grid<std::uint16_t> read_codes(const fs::path& path) {
     auto in = open(path);
     const OIIO::ImageSpec spec = in->spec();
     if (spec.nchannels != 1 || spec.format != OIIO::TypeDesc::UINT16)
-        throw Error(path.string() + ": is not a 16-bit, one-channel TIFF", "import the scene again");
+        throw Error(path.string() + ": is not a 16-bit, one-channel TIFF",
+                    "import the scene again");
     Grid<std::uint16_t> out(GridSize{spec.width, spec.height});
     if (!in->read_image(0, 0, 0, 1, OIIO::TypeDesc::UINT16, out.values.data()))
-        throw Error(path.string() + ": is damaged (" + in->geterror() + ")", "import the scene again");
+        throw Error(path.string() + ": is damaged (" + in->geterror() + ")",
+                    "import the scene again");
     return out;
 }
 
@@ -140,7 +147,8 @@ Picture read_rgba(const fs::path& path) {
     const auto pixels = std::size_t(spec.image_pixels());
     std::vector<std::uint8_t> values(std::size_t(channels) * pixels);
     if (!in->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, values.data()))
-        throw Error(path.string() + ": is damaged (" + in->geterror() + ")", "import the scene again");
+        throw Error(path.string() + ": is damaged (" + in->geterror() + ")",
+                    "import the scene again");
     Picture out{.width_px = spec.width, .height_px = spec.height, .channels = 4, .bytes = {}};
     out.bytes.resize(4 * pixels);
     for (std::size_t i = 0; i < pixels; ++i)

@@ -1,5 +1,6 @@
 #pragma once
-/// @file files.hpp  Pictures on disk, by OpenImageIO. Everything is written beside its name and then
+/// @file files.hpp  Pictures on disk, by OpenImageIO. Everything is written beside its name and
+/// then
 ///                  renamed, so that no half picture is ever left.
 #include "core/grid.hpp"
 #include "core/image.hpp"

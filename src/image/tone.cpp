@@ -6,8 +6,10 @@
 namespace tarn::image {
 
 namespace {
-double luminance(const glm::vec3& c) { return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b; } // BT.709
-}
+double luminance(const glm::vec3& c) {
+    return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
+} // BT.709
+} // namespace
 
 double srgb_encode(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
@@ -30,7 +32,8 @@ double auto_exposure(const Image& image, double key, double least, double greate
 }
 
 Picture encode_linear(const Image& image) {
-    Picture out{.width_px = image.width_px, .height_px = image.height_px, .channels = 3, .bytes = {}};
+    Picture out{
+        .width_px = image.width_px, .height_px = image.height_px, .channels = 3, .bytes = {}};
     for (const glm::vec3& c : image.radiance)
         for (int k = 0; k < 3; ++k)
             out.bytes.push_back(static_cast<std::uint8_t>(
@@ -44,7 +47,8 @@ Picture tone_map(const Image& image, double exposure) {
     const double half = std::pow(0.18, contrast) * (1.0 - 0.18) / 0.18;
     // 4 x 4 Bayer thresholds, mean zero, within half an 8-bit step.
     static constexpr int bayer[16] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
-    Picture out{.width_px = image.width_px, .height_px = image.height_px, .channels = 3, .bytes = {}};
+    Picture out{
+        .width_px = image.width_px, .height_px = image.height_px, .channels = 3, .bytes = {}};
     out.bytes.resize(image.radiance.size() * 3);
     // A table replaces three million powers; its steps are a sixteenth of an 8-bit step.
     static const auto table = [] {

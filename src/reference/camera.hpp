@@ -15,7 +15,8 @@ inline glm::dvec3 pixel_direction(glm::dvec3 forward, glm::dvec3 right, glm::dve
                                   glm::dvec2 half_tangent, glm::dvec2 place) {
     const double across = std::atan((2.0 * place.x - 1.0) * half_tangent.x);
     const double rise = std::atan((1.0 - 2.0 * place.y) * half_tangent.y * std::cos(across));
-    return std::cos(rise) * (std::cos(across) * forward + std::sin(across) * right) + std::sin(rise) * up;
+    return std::cos(rise) * (std::cos(across) * forward + std::sin(across) * right) +
+           std::sin(rise) * up;
 }
 
 } // namespace tarn::reference

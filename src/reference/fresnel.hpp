@@ -45,7 +45,8 @@ inline glm::dvec3 refracted(glm::dvec3 direction, double eta) {
         return direction;
     const double angle_t = std::asin(std::min(1.0, eta * along));
     const double vertical = std::copysign(std::cos(angle_t), direction.z);
-    return {direction.x / along * std::sin(angle_t), direction.y / along * std::sin(angle_t), vertical};
+    return {direction.x / along * std::sin(angle_t), direction.y / along * std::sin(angle_t),
+            vertical};
 }
 
 } // namespace tarn::reference

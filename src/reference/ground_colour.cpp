@@ -13,12 +13,14 @@ double step(double low, double high, double x) {
 }
 
 /// One coat of paint over another.
-void coat(glm::dvec3& colour, glm::dvec3 paint, double share) { colour += (paint - colour) * share; }
+void coat(glm::dvec3& colour, glm::dvec3 paint, double share) {
+    colour += (paint - colour) * share;
+}
 
 } // namespace
 
-glm::dvec3 ground_albedo(glm::dvec2 place_m, double height_m, bool bed, double near_water, double tree_m,
-                         double snow_m, double slope, double footprint_m) {
+glm::dvec3 ground_albedo(glm::dvec2 place_m, double height_m, bool bed, double near_water,
+                         double tree_m, double snow_m, double slope, double footprint_m) {
     const double broad = faded_noise(place_m, 1100.0, footprint_m, 1);
     const double fine = faded_noise(place_m, 90.0, footprint_m, 11);
     const double grain = faded_noise(place_m, 5.0, footprint_m, 21);
@@ -51,7 +53,8 @@ glm::dvec3 ground_albedo(glm::dvec2 place_m, double height_m, bool bed, double n
          step(snow_m - 110.0, snow_m + 110.0, height_m + 400.0 * jitter) *
              (1.0 - step(0.9, 1.35, slope + 0.3 * (fine - 0.5))));
     coat(colour, mottled(0.31, 0.27, 0.19, 0.15) * tone,
-         near_water * (1.0 - step(0.5, 2.2, height_m + 1.2 * (fine - 0.5))) * (1.0 - step(0.4, 0.8, slope)));
+         near_water * (1.0 - step(0.5, 2.2, height_m + 1.2 * (fine - 0.5))) *
+             (1.0 - step(0.4, 0.8, slope)));
     return colour;
 }
 

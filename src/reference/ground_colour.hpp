@@ -9,7 +9,7 @@
 namespace tarn::reference {
 
 /// Same contract as the GLSL function of the same name.
-glm::dvec3 ground_albedo(glm::dvec2 place_m, double height_m, bool bed, double near_water, double tree_m, double snow_m,
-                         double slope, double footprint_m);
+glm::dvec3 ground_albedo(glm::dvec2 place_m, double height_m, bool bed, double near_water,
+                         double tree_m, double snow_m, double slope, double footprint_m);
 
 } // namespace tarn::reference

@@ -46,8 +46,8 @@ std::optional<double> first_below(Gap gap, double a, double b) {
 
 } // namespace
 
-std::optional<Hit> trace_field(const Heightfield& ground, const Heightfield* water, glm::dvec3 origin,
-                               glm::dvec3 direction, double t_max) {
+std::optional<Hit> trace_field(const Heightfield& ground, const Heightfield* water,
+                               glm::dvec3 origin, glm::dvec3 direction, double t_max) {
     const GridSize size = ground.size();
     const double s = ground.spacing_m;
     const double oc = ground.col(origin.x), orow = ground.row(origin.y);
@@ -77,7 +77,8 @@ std::optional<Hit> trace_field(const Heightfield& ground, const Heightfield* wat
         const int cell = (at == f && step < 0.0) ? int(f) - 1 : int(f);
         return std::clamp(cell, 0, cells - 1);
     };
-    int c = cell_of(oc + t0 * dc, dc, size.cols - 1), r = cell_of(orow + t0 * dr, dr, size.rows - 1);
+    int c = cell_of(oc + t0 * dc, dc, size.cols - 1),
+        r = cell_of(orow + t0 * dr, dr, size.rows - 1);
     double t = t0;
     while (true) {
         const double t_c = dc == 0.0 ? infinity : ((dc > 0.0 ? c + 1 : c) - oc) / dc;
@@ -117,7 +118,8 @@ std::optional<Hit> trace_field(const Heightfield& ground, const Heightfield* wat
             }
         }
         if (best)
-            return Hit{*best, is_water, oc + *best * dc, orow + *best * dr, origin + *best * direction};
+            return Hit{*best, is_water, oc + *best * dc, orow + *best * dr,
+                       origin + *best * direction};
         if (out >= t1)
             return {};
         t = out;

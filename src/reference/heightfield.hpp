@@ -22,7 +22,7 @@ struct Hit {
 /// hold some.
 /// @param direction  unit, scene axes
 /// @param water      null to look at the ground only
-std::optional<Hit> trace_field(const Heightfield& ground, const Heightfield* water, glm::dvec3 origin,
-                               glm::dvec3 direction, double t_max);
+std::optional<Hit> trace_field(const Heightfield& ground, const Heightfield* water,
+                               glm::dvec3 origin, glm::dvec3 direction, double t_max);
 
 } // namespace tarn::reference

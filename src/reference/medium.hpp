@@ -25,8 +25,8 @@ inline glm::dvec3 path_radiance(glm::dvec3 backscattering_per_m, glm::dvec3 atte
     static constexpr double weight[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889,
                                          0.4786286704993665, 0.2369268850561891};
     // Panels short against the steepest change.
-    const double steepest = std::max({attenuation_per_m.x, attenuation_per_m.y, attenuation_per_m.z}) *
-                            (1.0 + slant);
+    const double steepest =
+        std::max({attenuation_per_m.x, attenuation_per_m.y, attenuation_per_m.z}) * (1.0 + slant);
     const int panels = std::clamp(int(std::ceil(steepest * distance_m / 1.5)), 1, 20'000);
     const double half = 0.5 * distance_m / panels;
     glm::dvec3 sum(0.0);

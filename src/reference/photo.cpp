@@ -13,12 +13,14 @@ double linear(double encoded) { // inverse of the sRGB transfer function
 
 Photo::Photo(const Ortho& ortho)
     : west_m_(ortho.west_m), north_m_(ortho.north_m), spacing_m_(ortho.spacing_m),
-      width_m_(ortho.picture.width_px * ortho.spacing_m), height_m_(ortho.picture.height_px * ortho.spacing_m) {
+      width_m_(ortho.picture.width_px * ortho.spacing_m),
+      height_m_(ortho.picture.height_px * ortho.spacing_m) {
     Level base{ortho.picture.width_px, ortho.picture.height_px, {}};
     base.texels.reserve(ortho.picture.bytes.size() / 4);
     for (std::size_t i = 0; i + 3 < ortho.picture.bytes.size(); i += 4)
-        base.texels.emplace_back(linear(ortho.picture.bytes[i] / 255.0), linear(ortho.picture.bytes[i + 1] / 255.0),
-                                 linear(ortho.picture.bytes[i + 2] / 255.0), ortho.picture.bytes[i + 3] / 255.0);
+        base.texels.emplace_back(
+            linear(ortho.picture.bytes[i] / 255.0), linear(ortho.picture.bytes[i + 1] / 255.0),
+            linear(ortho.picture.bytes[i + 2] / 255.0), ortho.picture.bytes[i + 3] / 255.0);
     levels_.push_back(std::move(base));
     while (levels_.back().width > 1 || levels_.back().height > 1) {
         const Level& fine = levels_.back();
@@ -28,7 +30,8 @@ Photo::Photo(const Ortho& ortho)
             for (int x = 0; x < next.width; ++x) {
                 glm::dvec4 sum(0.0);
                 for (int k = 0; k < 4; ++k)
-                    sum += fine.texels[std::size_t(std::min(2 * y + k / 2, fine.height - 1)) * std::size_t(fine.width) +
+                    sum += fine.texels[std::size_t(std::min(2 * y + k / 2, fine.height - 1)) *
+                                           std::size_t(fine.width) +
                                        std::size_t(std::min(2 * x + k % 2, fine.width - 1))];
                 next.texels[std::size_t(y) * std::size_t(next.width) + std::size_t(x)] = 0.25 * sum;
             }

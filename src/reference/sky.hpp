@@ -27,7 +27,8 @@ inline glm::dvec2 sky_place(glm::dvec3 direction, glm::dvec3 sun) {
 inline glm::dvec3 sky_radiance(const scene::SkyTable& table, glm::dvec3 direction, glm::dvec3 sun) {
     const glm::dvec2 place = sky_place(direction, sun);
     const double x = place.x * (table.azimuths - 1), y = place.y * (table.elevations - 1);
-    const int i = std::clamp(int(x), 0, table.azimuths - 2), j = std::clamp(int(y), 0, table.elevations - 2);
+    const int i = std::clamp(int(x), 0, table.azimuths - 2),
+              j = std::clamp(int(y), 0, table.elevations - 2);
     const double u = x - i, v = y - j;
     return (1 - v) * ((1 - u) * glm::dvec3(table.at(i, j)) + u * glm::dvec3(table.at(i + 1, j))) +
            v * ((1 - u) * glm::dvec3(table.at(i, j + 1)) + u * glm::dvec3(table.at(i + 1, j + 1)));

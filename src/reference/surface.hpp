@@ -14,12 +14,13 @@ namespace tarn::reference {
 /// differences amount to.
 inline glm::dvec2 ground_gradient(const Heightfield& ground, double col, double row) {
     const GridSize size = ground.size();
-    const int c0 = std::clamp(int(col), 0, size.cols - 2), r0 = std::clamp(int(row), 0, size.rows - 2);
+    const int c0 = std::clamp(int(col), 0, size.cols - 2),
+              r0 = std::clamp(int(row), 0, size.rows - 2);
     const double u = col - c0, v = row - r0;
     const auto shifted = [&](int dc, int dr) {
         const auto node = [&](int c, int r) {
-            return ground.elevation_m(Node{std::clamp(c + dc, 0, size.cols - 1),
-                                           std::clamp(r + dr, 0, size.rows - 1)});
+            return ground.elevation_m(
+                Node{std::clamp(c + dc, 0, size.cols - 1), std::clamp(r + dr, 0, size.rows - 1)});
         };
         return (1 - u) * (1 - v) * node(c0, r0) + u * (1 - v) * node(c0 + 1, r0) +
                (1 - u) * v * node(c0, r0 + 1) + u * v * node(c0 + 1, r0 + 1);

@@ -104,11 +104,13 @@ private:
         return share;
     }
 
-    glm::dvec3 albedo(const Hit& hit, bool bed, double level_m, double slope, double footprint) const {
+    glm::dvec3 albedo(const Hit& hit, bool bed, double level_m, double slope,
+                      double footprint) const {
         if (settings_.ground_albedo)
             return glm::dvec3(*settings_.ground_albedo);
         const double s = scene_.ground.spacing_m;
-        return ground_albedo({hit.col * s, hit.row * s}, hit.point.z - level_m, bed, shore_share(hit), scene_.look.tree_line_m - level_m,
+        return ground_albedo({hit.col * s, hit.row * s}, hit.point.z - level_m, bed,
+                             shore_share(hit), scene_.look.tree_line_m - level_m,
                              scene_.look.snow_line_m - level_m, slope, footprint);
     }
 
@@ -136,7 +138,8 @@ private:
         const glm::dvec3 colour = albedo(hit, true, level, slope, footprint);
         const double depth = std::max(level - hit.point.z, 0.0);
         glm::dvec3 irradiance = light_.sky_irradiance * sky_entering *
-                                transmittance(attenuation_, sky_slant * depth) * (1.0 + normal.z) / 2.0;
+                                transmittance(attenuation_, sky_slant * depth) * (1.0 + normal.z) /
+                                2.0;
         const double facing = glm::dot(normal, sun_below_);
         if (light_.sun_direction.z > 0.0 && facing > 0.0) {
             bool lit = true;
@@ -145,7 +148,8 @@ private:
                 const double up = std::max(level - from.z, 0.0) / sun_below_.z;
                 glm::dvec3 top = from + up * sun_below_;
                 top.z = std::max(level, from.z);
-                lit = !blocked(from, sun_below_, up) && !blocked(top, light_.sun_direction, infinity);
+                lit =
+                    !blocked(from, sun_below_, up) && !blocked(top, light_.sun_direction, infinity);
             }
             if (lit)
                 irradiance += sun_irradiance_below_ * facing *
@@ -158,7 +162,8 @@ private:
     /// @param may_split  whether a water surface is looked for
     glm::dvec3 in_air(glm::dvec3 origin, glm::dvec3 direction, double before_m, bool may_split,
                       double* distance) const {
-        const auto hit = trace_field(scene_.ground, may_split ? &scene_.water : nullptr, origin, direction, infinity);
+        const auto hit = trace_field(scene_.ground, may_split ? &scene_.water : nullptr, origin,
+                                     direction, infinity);
         if (distance)
             *distance = hit ? hit->t : infinity;
         if (!hit)
@@ -169,11 +174,12 @@ private:
         const double mirror = reflectance(std::min(-direction.z, 1.0), 1.0 / index_);
         glm::dvec3 out(0.0);
         if (settings_.reflection)
-            out += mirror * in_air(hit->point, {direction.x, direction.y, -direction.z}, before_m + hit->t,
-                                   false, nullptr);
+            out += mirror * in_air(hit->point, {direction.x, direction.y, -direction.z},
+                                   before_m + hit->t, false, nullptr);
         if (settings_.refraction)
             out += (1.0 - mirror) / (index_ * index_) *
-                   in_water(hit->point, refracted(direction, 1.0 / index_), lake, before_m + hit->t, false, nullptr);
+                   in_water(hit->point, refracted(direction, 1.0 / index_), lake, before_m + hit->t,
+                            false, nullptr);
         return out;
     }
 
@@ -192,8 +198,9 @@ private:
             *distance = hit || at_surface ? length : infinity;
 
         const glm::dvec3 bb = scene_.optics.backscattering_per_m;
-        glm::dvec3 out = path_radiance(bb, attenuation_, light_.sky_irradiance * sky_entering * sky_slant,
-                                       sky_slant, depth, -direction.z, length);
+        glm::dvec3 out =
+            path_radiance(bb, attenuation_, light_.sky_irradiance * sky_entering * sky_slant,
+                          sky_slant, depth, -direction.z, length);
         if (light_.sun_direction.z > 0.0)
             out += path_radiance(bb, attenuation_, sun_irradiance_below_, 1.0 / sun_below_.z, depth,
                                  -direction.z, length);
@@ -207,7 +214,8 @@ private:
         const double mirror = reflectance(std::min(direction.z, 1.0), index_);
         if (settings_.reflection)
             out += left * mirror *
-                   in_water(top, {direction.x, direction.y, -direction.z}, lake, before_m + length, false, nullptr);
+                   in_water(top, {direction.x, direction.y, -direction.z}, lake, before_m + length,
+                            false, nullptr);
         if (settings_.refraction && mirror < 1.0)
             out += left * (1.0 - mirror) * index_ * index_ *
                    in_air(top, refracted(direction, index_), before_m + length, false, nullptr);

@@ -36,7 +36,8 @@ void Renderer::upload_scene() {
     const Heightfield& ground = scene_.ground;
     const Heightfield& water = scene_.water;
     const GridSize size = ground.size();
-    heights_ = gpu::Texture2D(GL_RG16, size.cols, size.rows, 1, gpu::Filter::nearest, "height field");
+    heights_ =
+        gpu::Texture2D(GL_RG16, size.cols, size.rows, 1, gpu::Filter::nearest, "height field");
     std::vector<std::uint16_t> packed(2 * size.count());
     for (std::size_t i = 0; i < size.count(); ++i) {
         packed[2 * i] = ground.codes.values[i];
@@ -67,7 +68,8 @@ void Renderer::upload_scene() {
         ortho_.upload(GL_RGBA, GL_UNSIGNED_BYTE, o.picture.bytes.data());
         glGenerateTextureMipmap(ortho_.id());
         const double s = ground.spacing_m;
-        block_.ortho = {float((o.west_m - ground.west_m) / s), float((ground.north_m - o.north_m) / s),
+        block_.ortho = {float((o.west_m - ground.west_m) / s),
+                        float((ground.north_m - o.north_m) / s),
                         float(o.picture.width_px * o.spacing_m / s),
                         float(o.picture.height_px * o.spacing_m / s)};
         block_.ortho_lod.x = float(o.spacing_m);
@@ -101,7 +103,8 @@ void Renderer::build_maxima() {
         glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
         maxima_.bind_image(TARN_IMAGE_MAXIMA, GL_WRITE_ONLY, level + 1);
         glUniform1i(0, level);
-        glDispatchCompute(groups(std::max(1, w >> (level + 1))), groups(std::max(1, h >> (level + 1))), 1);
+        glDispatchCompute(groups(std::max(1, w >> (level + 1))),
+                          groups(std::max(1, h >> (level + 1))), 1);
     }
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     gpu::check_gl("building the block maxima");
@@ -131,7 +134,8 @@ void Renderer::prepare(const scene::View& view) {
     block_.camera = {float(col - std::floor(col)), float(row - std::floor(row)),
                      float(p.z - ground.offset_m), float(pixel_rad)};
     block_.forward = glm::vec4(glm::vec3(camera.forward), 0.0f);
-    block_.right = glm::vec4(glm::vec3(camera.right), float(half * settings.width_px / settings.height_px));
+    block_.right =
+        glm::vec4(glm::vec3(camera.right), float(half * settings.width_px / settings.height_px));
     block_.up = glm::vec4(glm::vec3(camera.up), float(half));
 
     const scene::Lighting& light = view.lighting;
@@ -165,8 +169,8 @@ void Renderer::prepare(const scene::View& view) {
     block_.counts.y = static_cast<std::uint32_t>(settings.height_px);
     block_.counts.z = flags;
 
-    sky_ = gpu::Texture2D(GL_RGB32F, light.sky.azimuths, light.sky.elevations, 1, gpu::Filter::linear,
-                          "sky");
+    sky_ = gpu::Texture2D(GL_RGB32F, light.sky.azimuths, light.sky.elevations, 1,
+                          gpu::Filter::linear, "sky");
     sky_.upload(GL_RGB, GL_FLOAT, light.sky.radiance.data());
     if (radiance_.width_px() != settings.width_px || radiance_.height_px() != settings.height_px) {
         radiance_ = gpu::Texture2D(GL_RGBA32F, settings.width_px, settings.height_px, 1,

@@ -95,16 +95,16 @@ Lighting clear_sky(glm::dvec3 sun_direction) {
                 const double slab = std::abs(x) < 1e-6 ? 1.0 : -std::expm1(-x) / x;
                 const double radiance =
                     twilight * 0.25 * phase * a.total() * m_view * direct * slab; // E0 / 4 pi
-                out.sky.radiance[std::size_t(j) * std::size_t(out.sky.azimuths) +
-                                 std::size_t(i)][channel] = static_cast<float>(radiance);
+                out.sky.radiance[std::size_t(j) * std::size_t(out.sky.azimuths) + std::size_t(i)]
+                                [channel] = static_cast<float>(radiance);
             }
         }
         const double once = horizontal_irradiance(out.sky)[channel];
         const double absorbed = std::exp(-(a.total() - a.scattering()) * m_sun);
         const double g = 0.95 * a.aerosol * 0.76 / a.scattering();
-        const double diffuse = pi * cos_sun * absorbed * twilight *
-                               (two_stream(a.scattering(), g, cos_sun) -
-                                std::exp(-a.scattering() / cos_sun));
+        const double diffuse =
+            pi * cos_sun * absorbed * twilight *
+            (two_stream(a.scattering(), g, cos_sun) - std::exp(-a.scattering() / cos_sun));
         const auto lift = static_cast<float>(std::max(0.0, diffuse - once) / pi);
         for (glm::vec3& radiance : out.sky.radiance)
             radiance[channel] += lift;
@@ -113,8 +113,7 @@ Lighting clear_sky(glm::dvec3 sun_direction) {
     return out;
 }
 
-Lighting uniform_sky(glm::dvec3 sun_direction, glm::dvec3 sun_irradiance,
-                     glm::dvec3 sky_radiance) {
+Lighting uniform_sky(glm::dvec3 sun_direction, glm::dvec3 sun_irradiance, glm::dvec3 sky_radiance) {
     Lighting out;
     out.sun_direction = glm::normalize(sun_direction);
     out.sun_irradiance = sun_irradiance;

@@ -21,11 +21,11 @@ struct SkyTable {
 };
 
 struct Lighting {
-    glm::dvec3 sun_direction{0, 0, 1};    ///< unit, TOWARDS the sun, scene axes
-    glm::dvec3 sun_irradiance{0};         ///< on a plane facing the sun, at the ground
-    bool sun_disc = true;                 ///< is the sun itself to be seen
+    glm::dvec3 sun_direction{0, 0, 1}; ///< unit, TOWARDS the sun, scene axes
+    glm::dvec3 sun_irradiance{0};      ///< on a plane facing the sun, at the ground
+    bool sun_disc = true;              ///< is the sun itself to be seen
     SkyTable sky;
-    glm::dvec3 sky_irradiance{0};         ///< of the sky alone on a horizontal plane
+    glm::dvec3 sky_irradiance{0}; ///< of the sky alone on a horizontal plane
 };
 
 /// Angular radius of the sun [rad]: 16 arc minutes.

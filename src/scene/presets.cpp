@@ -15,9 +15,9 @@ namespace {
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
 struct Place {
-    glm::dvec2 centre;     ///< of the lake's bounding box
-    glm::dvec2 half;       ///< half its sides
-    double radius;         ///< half its diagonal
+    glm::dvec2 centre;           ///< of the lake's bounding box
+    glm::dvec2 half;             ///< half its sides
+    double radius;               ///< half its diagonal
     std::vector<glm::dvec2> wet; ///< up to some hundred places on the lake
 };
 
@@ -62,7 +62,8 @@ bool sees(const Scene& scene, glm::dvec3 eye, glm::dvec3 target) {
     return true;
 }
 
-double visible_share(const Scene& scene, const LakeRecord& lake, const Place& place, glm::dvec3 eye) {
+double visible_share(const Scene& scene, const LakeRecord& lake, const Place& place,
+                     glm::dvec3 eye) {
     std::size_t seen = 0;
     for (const glm::dvec2 p : place.wet)
         seen += sees(scene, eye, {p, lake.level_m});
@@ -89,8 +90,10 @@ Camera overview(const Scene& scene, const LakeRecord& lake, glm::dvec3 sun, doub
             const glm::dvec2 view(std::sin(heading * degree), std::cos(heading * degree));
             // Wide enough for the lake as seen along this heading.
             const glm::dvec2 across(view.y, -view.x);
-            const double half_width = std::abs(across.x) * place.half.x + std::abs(across.y) * place.half.y;
-            const double half_depth = std::abs(view.x) * place.half.x + std::abs(view.y) * place.half.y;
+            const double half_width =
+                std::abs(across.x) * place.half.x + std::abs(across.y) * place.half.y;
+            const double half_depth =
+                std::abs(view.x) * place.half.x + std::abs(view.y) * place.half.y;
             const double spread = std::tan(0.5 * fov * degree) * aspect;
             const double distance =
                 std::max(1.02 * half_width / spread + 0.45 * half_depth, 1.3 * half_depth);
@@ -110,7 +113,8 @@ Camera overview(const Scene& scene, const LakeRecord& lake, glm::dvec3 sun, doub
             const glm::dvec2 beyond = place.centre + view * (place.radius * 1.6);
             if (inside(scene.ground, beyond))
                 score += 0.4 * std::clamp((scene.ground.elevation_m(beyond.x, beyond.y) - level) /
-                                              (0.3 * place.radius), 0.0, 1.0);
+                                              (0.3 * place.radius),
+                                          0.0, 1.0);
             if (score > best_score) {
                 best_score = score;
                 best = camera;
@@ -131,15 +135,15 @@ Camera shore(const Scene& scene, const LakeRecord& lake, glm::dvec3 sun) {
         // Walk back from the middle of the lake to the bank, then a few steps up it.
         double back = 0.0;
         const double step = 0.5 * scene.ground.spacing_m;
-        while (back < 4.0 * place.radius && scene.water_level_m(middle.x - view.x * back,
-                                                                middle.y - view.y * back))
+        while (back < 4.0 * place.radius &&
+               scene.water_level_m(middle.x - view.x * back, middle.y - view.y * back))
             back += step;
         const glm::dvec2 p = middle - view * (back + 0.5 * scene.ground.spacing_m);
         if (!inside(scene.ground, p))
             continue;
         double fetch = 0.0;
-        while (fetch < 4.0 * place.radius && scene.water_level_m(middle.x + view.x * fetch,
-                                                                 middle.y + view.y * fetch))
+        while (fetch < 4.0 * place.radius &&
+               scene.water_level_m(middle.x + view.x * fetch, middle.y + view.y * fetch))
             fetch += step;
         const double z = std::max(lake.level_m, scene.ground.elevation_m(p.x, p.y)) + height;
         double skyline = 0.0;
@@ -147,8 +151,8 @@ Camera shore(const Scene& scene, const LakeRecord& lake, glm::dvec3 sun) {
             const double d = (fetch + 0.15 * i * place.radius);
             const glm::dvec2 q = middle + view * d;
             if (inside(scene.ground, q))
-                skyline = std::max(skyline, (scene.ground.elevation_m(q.x, q.y) - z) /
-                                                (d + back) / 0.15);
+                skyline =
+                    std::max(skyline, (scene.ground.elevation_m(q.x, q.y) - z) / (d + back) / 0.15);
         }
         const double high_bank = (z - lake.level_m) / (6.0 * height);
         const double score = std::min((back + fetch) / place.radius, 1.5) +
@@ -198,8 +202,8 @@ Camera dive(const Scene& scene, const LakeRecord& lake, glm::dvec3 sun) {
             if (steep < 1e-6)
                 continue;
             const glm::dvec2 uphill = slope / steep;
-            const double score = -2.0 * std::abs(depth - wish) / wish +
-                                 1.5 * std::min(steep, 0.5) + 0.3 * sun_bonus(uphill, sun);
+            const double score = -2.0 * std::abs(depth - wish) / wish + 1.5 * std::min(steep, 0.5) +
+                                 0.3 * sun_bonus(uphill, sun);
             if (score > best_score) {
                 best_score = score;
                 best = n;

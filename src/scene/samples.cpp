@@ -43,8 +43,10 @@ Scene fill(const std::function<double(double, double)>& height, int side, double
             deepest = depth;
             lake.seed = at;
         }
-        lake.west_north = {std::min(lake.west_north.col, at.col), std::min(lake.west_north.row, at.row)};
-        lake.east_south = {std::max(lake.east_south.col, at.col), std::max(lake.east_south.row, at.row)};
+        lake.west_north = {std::min(lake.west_north.col, at.col),
+                           std::min(lake.west_north.row, at.row)};
+        lake.east_south = {std::max(lake.east_south.col, at.col),
+                           std::max(lake.east_south.row, at.row)};
         for (int dr = -1; dr <= 1; ++dr)
             for (int dc = -1; dc <= 1; ++dc) {
                 const Node n{at.col + dc, at.row + dr};
@@ -69,7 +71,8 @@ Scene fill(const std::function<double(double, double)>& height, int side, double
 /// Integer-lattice value noise with a quintic ramp; any hash would do, this one is fixed.
 double noise(double x, double y) {
     const auto value = [](long i, long j) {
-        auto h = static_cast<std::uint32_t>(i) * 0x8da6b343u ^ static_cast<std::uint32_t>(j) * 0xd8163841u;
+        auto h = static_cast<std::uint32_t>(i) * 0x8da6b343u ^
+                 static_cast<std::uint32_t>(j) * 0xd8163841u;
         h = (h ^ (h >> 15)) * 0x2c1b3c6du;
         h = (h ^ (h >> 12)) * 0x297a2d39u;
         return double((h ^ (h >> 15)) >> 8) / double(1u << 24);
@@ -97,7 +100,8 @@ double mountains(double x, double y) {
     const double bed = 790.0 + 90.0 * relief;
     const double blend = std::clamp((r - 1700.0) / 1900.0, 0.0, 1.0);
     const double smooth = blend * blend * (3.0 - 2.0 * blend);
-    const double island = 210.0 * std::exp(-(std::pow(x - 700.0, 2) + std::pow(y + 500.0, 2)) / 9.0e4);
+    const double island =
+        210.0 * std::exp(-(std::pow(x - 700.0, 2) + std::pow(y + 500.0, 2)) / 9.0e4);
     return bed * (1.0 - smooth) + land * smooth + island;
 }
 
@@ -118,8 +122,8 @@ Scene mountain_lake(int side) {
 
 Scene tank() {
     return fill(
-        [](double x, double y) { return std::max(std::abs(x), std::abs(y)) > 99.5 ? 1.0 : -8.0; }, 201,
-        100.0, 0.0);
+        [](double x, double y) { return std::max(std::abs(x), std::abs(y)) > 99.5 ? 1.0 : -8.0; },
+        201, 100.0, 0.0);
 }
 
 } // namespace tarn::scene

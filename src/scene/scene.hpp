@@ -33,7 +33,7 @@ GroundLook ground_look(double lat_deg);
 
 struct Scene {
     geo::Frame frame;
-    Heightfield ground, water; ///< same size, spacing and place
+    Heightfield ground, water;     ///< same size, spacing and place
     std::vector<LakeRecord> lakes; ///< at least one
     WaterOptics optics;
     GroundLook look;

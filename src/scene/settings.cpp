@@ -30,7 +30,8 @@ glm::dvec2 sample_offset(int index, int count) {
         return {0.5, 0.5};
     constexpr double plastic = 1.32471795724474602596; // root of x^3 = x + 1
     const auto fraction = [](double x) { return x - std::floor(x); };
-    return {fraction(0.5 + (index + 1) / plastic), fraction(0.5 + (index + 1) / (plastic * plastic))};
+    return {fraction(0.5 + (index + 1) / plastic),
+            fraction(0.5 + (index + 1) / (plastic * plastic))};
 }
 
 double shadow_lift_m(const Heightfield& ground) {

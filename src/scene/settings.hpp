@@ -19,7 +19,7 @@ struct RenderSettings {
     bool shadows = true;
     bool reflection = true;
     bool refraction = true;
-    double least_transmittance = 0.002; ///< underwater paths end where less is left, [1e-6, .5]
+    double least_transmittance = 0.002;  ///< underwater paths end where less is left, [1e-6, .5]
     std::optional<double> ground_albedo; ///< lab: one grey for all ground, [0, 1]
 
     /// @throws tarn::Error  naming the field, its value and the legal range

@@ -68,7 +68,8 @@ scene::Scene load(const fs::path& folder) {
     if (!fs::is_directory(folder, failed))
         throw Error(folder.string() + ": no such scene folder", "make one with tarn import");
     if (!is_scene(folder))
-        throw Error(folder.string() + ": holds no scene.json", "name a folder that tarn import made");
+        throw Error(folder.string() + ": holds no scene.json",
+                    "name a folder that tarn import made");
     std::ifstream in(member(folder, "scene.json"), std::ios::binary);
     if (!in)
         throw Error((folder / "scene.json").string() + ": cannot be read", "check its permissions");
@@ -152,7 +153,8 @@ void StagedFolder::commit() {
     std::error_code failed;
     if (fs::exists(target_, failed)) {
         // Both names change places in one step; then the old scene goes.
-        if (::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) {
+        if (::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) ==
+            0) {
             done_ = true;
             fs::remove_all(partial_, failed);
             return;

@@ -51,7 +51,8 @@ public:
 
     Field operator[](const char* key) const {
         if (!value_.is_object() || !value_.contains(key))
-            throw Error(where(key) + " is missing", "import the scene again, or restore scene.json");
+            throw Error(where(key) + " is missing",
+                        "import the scene again, or restore scene.json");
         return {value_.at(key), where(key)};
     }
     bool has(const char* key) const {
@@ -104,7 +105,8 @@ public:
         const std::string name = string();
         if (name.empty() || name.size() > 200 || name[0] == '.' ||
             name.find_first_of("/\\") != std::string::npos || name.find('\0') != std::string::npos)
-            throw Error(path_ + " is '" + name + "', which is no plain file name in the scene folder");
+            throw Error(path_ + " is '" + name +
+                        "', which is no plain file name in the scene folder");
         return name;
     }
 
@@ -155,7 +157,9 @@ ImportReport read_report(const Field& f) {
     r.created = f["created"].string();
     r.tarn_version = f["tarn_version"].string();
     r.resampling = f["resampling"].string();
-    const auto count = [&](const char* key) { return static_cast<std::uint64_t>(f[key].number(0, 1e12)); };
+    const auto count = [&](const char* key) {
+        return static_cast<std::uint64_t>(f[key].number(0, 1e12));
+    };
     r.nodes = count("nodes");
     r.void_nodes = count("void_nodes");
     r.filled_nodes = count("filled_nodes");
@@ -194,7 +198,8 @@ geo::Frame read_frame(const Field& f) {
         shift.side = d["side"].integer(2, 257);
         shift.reach_m = d["reach_m"].number(1e-3, 1e8);
         const auto count = std::size_t(shift.side) * std::size_t(shift.side);
-        for (const auto& [name, values] : {std::pair{"east_m", &shift.east_m}, std::pair{"north_m", &shift.north_m}}) {
+        for (const auto& [name, values] :
+             {std::pair{"east_m", &shift.east_m}, std::pair{"north_m", &shift.north_m}}) {
             const Field list = d[name];
             list.array_size(count, count);
             for (std::size_t k = 0; k < count; ++k)
@@ -238,8 +243,12 @@ std::string to_json(const scene::Scene& scene, const FileNames& files) {
                            {"up", vector_of(c.camera.up)},
                            {"fov_deg", c.camera.fov_deg}});
     for (const ImportInput& in : scene.report.inputs)
-        inputs.push_back({{"name", in.name}, {"role", in.role}, {"format", in.format},
-                          {"crs", in.crs}, {"vertical_datum", in.vertical}, {"size", in.size},
+        inputs.push_back({{"name", in.name},
+                          {"role", in.role},
+                          {"format", in.format},
+                          {"crs", in.crs},
+                          {"vertical_datum", in.vertical},
+                          {"size", in.size},
                           {"crc32", in.checksum}});
     const ImportReport& r = scene.report;
     json out = {
@@ -260,7 +269,8 @@ std::string to_json(const scene::Scene& scene, const FileNames& files) {
           {"absorption_per_m", vector_of(scene.optics.absorption_per_m)},
           {"backscattering_per_m", vector_of(scene.optics.backscattering_per_m)},
           {"index", scene.optics.index}}},
-        {"look", {{"tree_line_m", scene.look.tree_line_m}, {"snow_line_m", scene.look.snow_line_m}}},
+        {"look",
+         {{"tree_line_m", scene.look.tree_line_m}, {"snow_line_m", scene.look.snow_line_m}}},
         {"cameras", cameras}};
     if (scene.ortho)
         out["ortho"] = {{"file", files.ortho},

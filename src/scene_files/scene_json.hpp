@@ -18,7 +18,8 @@ struct FileNames {
 std::string to_json(const scene::Scene& scene, const FileNames& files);
 
 /// Fills everything but the codes of `ground`, `water` and `ortho` (whose sizes are set).
-/// @throws tarn::Error  naming the field: missing, of the wrong type, out of range, unknown version,
+/// @throws tarn::Error  naming the field: missing, of the wrong type, out of range, unknown
+/// version,
 ///                      or a file name that leaves the folder
 scene::Scene from_json(const std::string& text, FileNames& files);
 

@@ -52,9 +52,13 @@ struct Times {
 /// GPU timer where it works, else from finish to finish with the CPU's clock (software GL answers
 /// about a nanosecond to every timer query).
 Times measure(render::Renderer& renderer, int frames) {
-    for (int i = 0; i < 3; ++i)
+    // A third of a second, at least twice: long enough for a GPU to leave its idle clock.
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0;
+         i < 2 || std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(330); ++i) {
         renderer.draw_once();
-    glFinish();
+        glFinish();
+    }
     std::vector<double> gpu, cpu;
     gpu::Timer timer;
     for (int i = 0; i < frames; ++i) {
@@ -63,7 +67,9 @@ Times measure(render::Renderer& renderer, int frames) {
         renderer.draw_once();
         timer.stop();
         glFinish();
-        cpu.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+        cpu.push_back(
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+                .count());
         gpu.push_back(timer.milliseconds());
     }
     std::sort(gpu.begin(), gpu.end());
@@ -85,7 +91,8 @@ void write_ppm(const std::string& path, const Image& image) {
 }
 
 int run(int argc, char** argv) {
-    std::string sides = "1024,4096", sizes = "800x600,1920x1080,3840x2160", views = "high,shore,dive";
+    std::string sides = "1024,4096", sizes = "800x600,1920x1080,3840x2160",
+                views = "high,shore,dive";
     std::string json_path, ppm;
     int frames = 41;
     for (int i = 1; i < argc; ++i) {
@@ -118,7 +125,8 @@ int run(int argc, char** argv) {
         render::Renderer renderer(scene);
         glFinish();
         const double load_ms =
-            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - load).count();
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - load)
+                .count();
         std::printf("field %s^2: upload, maxima and shaders %.0f ms\n", side.c_str(), load_ms);
         for (const std::string& name : split(views))
             for (const std::string& size : split(sizes)) {
@@ -134,24 +142,33 @@ int run(int argc, char** argv) {
                     scene::View view;
                     view.camera = camera_for(name);
                     view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.5, -0.4, 0.75)));
-                    view.settings = {.width_px = w, .height_px = h, .samples = 1, .shadows = mode.shadows,
-                                     .reflection = mode.split, .refraction = mode.split};
+                    view.settings = {.width_px = w,
+                                     .height_px = h,
+                                     .samples = 1,
+                                     .shadows = mode.shadows,
+                                     .reflection = mode.split,
+                                     .refraction = mode.split};
                     if (!mode.split)
                         view.settings.ground_albedo = 0.2; // the walk alone, without colours
                     renderer.prepare(view);
                     const Times t = measure(renderer, frames);
-                    std::printf("%6s^2  %-5s  %-9s  %-12s  %9.3f ms  (quartiles %.3f to %.3f, %s)\n", side.c_str(),
-                                name.c_str(), size.c_str(), mode.name, t.median_ms, t.low_ms, t.high_ms, t.clock);
-                    json += text(first ? "\n" : ",\n", "{\"field\": ", side, ", \"view\": \"", name, "\", \"width\": ", w,
-                                 ", \"height\": ", h, ", \"mode\": \"", mode.name, "\", \"median_ms\": ", t.median_ms,
-                                 ", \"q1_ms\": ", t.low_ms, ", \"q3_ms\": ", t.high_ms, ", \"clock\": \"", t.clock, "\"}");
+                    std::printf(
+                        "%6s^2  %-5s  %-9s  %-12s  %9.3f ms  (quartiles %.3f to %.3f, %s)\n",
+                        side.c_str(), name.c_str(), size.c_str(), mode.name, t.median_ms, t.low_ms,
+                        t.high_ms, t.clock);
+                    json +=
+                        text(first ? "\n" : ",\n", "{\"field\": ", side, ", \"view\": \"", name,
+                             "\", \"width\": ", w, ", \"height\": ", h, ", \"mode\": \"", mode.name,
+                             "\", \"median_ms\": ", t.median_ms, ", \"q1_ms\": ", t.low_ms,
+                             ", \"q3_ms\": ", t.high_ms, ", \"clock\": \"", t.clock, "\"}");
                     first = false;
                     if (mode.split && mode.shadows && size == split(sizes).front()) {
                         const Image image = renderer.draw(view);
                         glm::dvec3 sum(0.0);
                         for (const glm::vec3& c : image.radiance)
                             sum += glm::dvec3(c) / double(image.radiance.size());
-                        std::printf("               mean radiance %.6f %.6f %.6f\n", sum.r, sum.g, sum.b);
+                        std::printf("               mean radiance %.6f %.6f %.6f\n", sum.r, sum.g,
+                                    sum.b);
                         if (!ppm.empty())
                             write_ppm(ppm + "_" + side + "_" + name + ".ppm", image);
                     }

@@ -4,8 +4,8 @@
 #include "image/files.hpp"
 #include "support/files.hpp"
 
-#include <csignal>
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -24,7 +24,10 @@ struct Shared {
     TempFolder folder;
     std::string dem, scene;
     Shared() : dem((folder / "bowl.tif").string()), scene((folder / "bowl").string()) {
-        EXPECT_EQ(std::system((std::string(TARN_SAMPLES_PROGRAM) + " " + folder.path().string() + " >/dev/null").c_str()), 0);
+        EXPECT_EQ(std::system((std::string(TARN_SAMPLES_PROGRAM) + " " + folder.path().string() +
+                               " >/dev/null")
+                                  .c_str()),
+                  0);
         const Outcome made = run("tarn import " + dem + " --level 10 --name Bowl -o " + scene);
         EXPECT_EQ(made.code, 0) << made.err;
         EXPECT_NE(made.out.find("wrote " + scene), std::string::npos);
@@ -58,7 +61,9 @@ TEST(Help, EveryCommandHasExamplesAndExitsWithZero) {
     for (const char* command : {"import", "info", "render", "doctor"}) {
         const Outcome o = run(std::string("tarn ") + command + " --help");
         EXPECT_EQ(o.code, 0);
-        EXPECT_TRUE(o.out.find("Examples") != std::string::npos || o.out.find("Exit code") != std::string::npos) << o.out;
+        EXPECT_TRUE(o.out.find("Examples") != std::string::npos ||
+                    o.out.find("Exit code") != std::string::npos)
+            << o.out;
     }
 }
 
@@ -74,18 +79,27 @@ TEST(Errors, AreOneLineThatSaysWhatAndWhatToDo) {
     const std::string scene = shared().scene, dem = shared().dem;
     const TempFolder t;
     const std::string out = " -o " + (t / "x.png").string();
-    expect_one_line("tarn import nowhere.tif --level 1 -o " + (t / "s").string(), 1, "no such file");
-    expect_one_line("tarn import " + dem + " --level high -o " + (t / "s").string(), 1, "--level: 'high' is no number");
-    expect_one_line("tarn import " + dem + " --level 10 --at 1 -o " + (t / "s").string(), 1, "need 2 numbers");
-    expect_one_line("tarn import " + dem + " --level -10 -o " + (t / "s").string(), 1, "nothing lies below");
-    expect_one_line("tarn import " + dem + " --level 10 -o " + t.path().string() + "/../..", 1, "scene");
+    expect_one_line("tarn import nowhere.tif --level 1 -o " + (t / "s").string(), 1,
+                    "no such file");
+    expect_one_line("tarn import " + dem + " --level high -o " + (t / "s").string(), 1,
+                    "--level: 'high' is no number");
+    expect_one_line("tarn import " + dem + " --level 10 --at 1 -o " + (t / "s").string(), 1,
+                    "need 2 numbers");
+    expect_one_line("tarn import " + dem + " --level -10 -o " + (t / "s").string(), 1,
+                    "nothing lies below");
+    expect_one_line("tarn import " + dem + " --level 10 -o " + t.path().string() + "/../..", 1,
+                    "scene");
     expect_one_line("tarn info " + t.path().string(), 1, "holds no scene.json");
     expect_one_line("tarn info " + (t / "none").string(), 1, "no such scene folder");
     expect_one_line("tarn render " + scene + " -o " + (t / "x.jpg").string(), 1, ".png or .exr");
-    expect_one_line("tarn render " + scene + " -o " + (t / "no/x.png").string(), 1, "no such folder");
-    expect_one_line("tarn render " + scene + out + " --camera moon", 1, "no camera is called 'moon'");
-    expect_one_line("tarn render " + scene + out + " --camera x=1,y=2,q=3", 1, "'q=3' is not understood");
-    expect_one_line("tarn render " + scene + out + " --camera x=1,y=2,z=3,above_water=4", 1, "exclude each other");
+    expect_one_line("tarn render " + scene + " -o " + (t / "no/x.png").string(), 1,
+                    "no such folder");
+    expect_one_line("tarn render " + scene + out + " --camera moon", 1,
+                    "no camera is called 'moon'");
+    expect_one_line("tarn render " + scene + out + " --camera x=1,y=2,q=3", 1,
+                    "'q=3' is not understood");
+    expect_one_line("tarn render " + scene + out + " --camera x=1,y=2,z=3,above_water=4", 1,
+                    "exclude each other");
     expect_one_line("tarn render " + scene + out + " --camera fov=40", 1, "no place given");
     expect_one_line("tarn render " + scene + out + " --camera x=0,y=0,fov=-1", 1, "fov is -1");
     expect_one_line("tarn render " + scene + out + " --camera x=nan,y=0", 1, "is no number");
@@ -94,12 +108,15 @@ TEST(Errors, AreOneLineThatSaysWhatAndWhatToDo) {
     expect_one_line("tarn render " + scene + out + " --size big", 1, "WIDTHxHEIGHT");
     expect_one_line("tarn render " + scene + out + " --samples 0", 1, "samples is 0");
     expect_one_line("tarn render " + scene + out + " --time noon", 1, "'noon' is no time");
-    expect_one_line("tarn render " + scene + out + " --sun 10,20 --time 2026-01-01T10:00Z", 1, "exclude each other");
-    expect_one_line("tarn render " + scene + out + " --sun-direction 0,0,0", 1, "--sun-direction is zero");
+    expect_one_line("tarn render " + scene + out + " --sun 10,20 --time 2026-01-01T10:00Z", 1,
+                    "exclude each other");
+    expect_one_line("tarn render " + scene + out + " --sun-direction 0,0,0", 1,
+                    "--sun-direction is zero");
     expect_one_line("tarn render " + scene + out + " --ground-albedo 2", 1, "ground albedo is 2");
     expect_one_line("tarn render " + scene + out + " --index 0.5", 1, "index is 0.5");
     expect_one_line("tarn render " + scene + out + " --absorption-per-m 1,2", 1, "need 3 numbers");
-    expect_one_line("tarn render " + scene + out + " --exposure 0 --size 16x16 --samples 1", 1, "--exposure");
+    expect_one_line("tarn render " + scene + out + " --exposure 0 --size 16x16 --samples 1", 1,
+                    "--exposure");
     EXPECT_TRUE(fs::is_empty(t.path()));
 }
 
@@ -108,31 +125,40 @@ TEST(Info, JsonHoldsWhatProgramsRelyOn) {
     ASSERT_EQ(o.code, 0) << o.err;
     const auto j = nlohmann::json::parse(o.out);
     const auto& lake = j.at("lakes").at(0);
-    for (const char* name : {"id", "name", "level_m", "area_m2", "true_area_m2", "volume_m3", "max_depth_m", "mean_depth_m",
-                             "shoreline_m", "islands", "lat_deg", "lon_deg", "open_at_edge", "bed"})
+    for (const char* name :
+         {"id", "name", "level_m", "area_m2", "true_area_m2", "volume_m3", "max_depth_m",
+          "mean_depth_m", "shoreline_m", "islands", "lat_deg", "lon_deg", "open_at_edge", "bed"})
         EXPECT_TRUE(lake.contains(name)) << name;
     EXPECT_NEAR(lake["area_m2"].get<double>(), M_PI * 250 * 250, 0.002 * M_PI * 250 * 250);
-    EXPECT_NEAR(lake["volume_m3"].get<double>(), M_PI * 250 * 250 * 5, 0.002 * M_PI * 250 * 250 * 5);
+    EXPECT_NEAR(lake["volume_m3"].get<double>(), M_PI * 250 * 250 * 5,
+                0.002 * M_PI * 250 * 250 * 5);
     EXPECT_EQ(lake["bed"], "measured");
     const Outcome words = run("tarn info " + shared().scene);
-    EXPECT_NE(words.out.find("10.00 m greatest, 5.00 m mean (bed measured)"), std::string::npos) << words.out;
+    EXPECT_NE(words.out.find("10.00 m greatest, 5.00 m mean (bed measured)"), std::string::npos)
+        << words.out;
     EXPECT_NE(words.out.find("dem bowl.tif (GTiff, 501 x 501"), std::string::npos) << words.out;
 }
 
 TEST(SceneFolder, OpensInGisProgramsInMetresAtTheRightPlace) {
     dem::register_drivers();
-    for (const auto& [name, expected] : {std::pair{"ground.tif", 40.0 * (3.0 * 3.0) / 250'000.0}, std::pair{"water.tif", 10.0}}) {
-        dem::Dataset ds(GDALDataset::Open((fs::path(shared().scene) / name).c_str(), GDAL_OF_RASTER));
+    for (const auto& [name, expected] :
+         {std::pair{"ground.tif", 40.0 * (3.0 * 3.0) / 250'000.0}, std::pair{"water.tif", 10.0}}) {
+        dem::Dataset ds(
+            GDALDataset::Open((fs::path(shared().scene) / name).c_str(), GDAL_OF_RASTER));
         ASSERT_TRUE(ds);
         double g[6];
         ds->GetGeoTransform(g);
         GDALRasterBand& band = *ds->GetRasterBand(1);
-        // The node 3 m east of the bowl's middle ... the grid is 2 m: take 2 m east, 0 north: r = 2.
-        const int col = int(std::floor((500'002.0 - g[0]) / g[1])), row = int(std::floor((5'300'000.0 - g[3]) / g[5]));
+        // The node 3 m east of the bowl's middle ... the grid is 2 m: take 2 m east, 0 north: r
+        // = 2.
+        const int col = int(std::floor((500'002.0 - g[0]) / g[1])),
+                  row = int(std::floor((5'300'000.0 - g[3]) / g[5]));
         std::uint16_t code = 0;
         ASSERT_EQ(band.RasterIO(GF_Read, col, row, 1, 1, &code, 1, 1, GDT_UInt16, 0, 0), CE_None);
         const double metres = band.GetOffset() + band.GetScale() * code;
-        EXPECT_NEAR(metres, std::string(name) == "water.tif" ? expected : 40.0 * 4.0 / 250'000.0, 0.002) << name;
+        EXPECT_NEAR(metres, std::string(name) == "water.tif" ? expected : 40.0 * 4.0 / 250'000.0,
+                    0.002)
+            << name;
         EXPECT_STREQ(band.GetUnitType(), "m");
         EXPECT_STREQ(ds->GetSpatialRef()->GetAuthorityCode(nullptr), "32633");
     }
@@ -141,8 +167,9 @@ TEST(SceneFolder, OpensInGisProgramsInMetresAtTheRightPlace) {
 
 TEST(Render, WritesPicturesThatSayWhereTheyAreFrom) {
     const TempFolder t;
-    const Outcome o = run("tarn render " + shared().scene + " --size 160x120 --samples 1 --camera shore -o " +
-                          (t / "a.png").string() + " -o " + (t / "a.exr").string());
+    const Outcome o =
+        run("tarn render " + shared().scene + " --size 160x120 --samples 1 --camera shore -o " +
+            (t / "a.png").string() + " -o " + (t / "a.exr").string());
     ASSERT_EQ(o.code, 0) << o.err;
     EXPECT_EQ(lines(o.out), 2);
     for (const char* name : {"a.png", "a.exr"}) {
@@ -166,8 +193,11 @@ TEST(Render, WritesPicturesThatSayWhereTheyAreFrom) {
     EXPECT_GT(row(110).g, row(110).r); // the water has taken the red
     // The camera in the metadata gives the same picture again.
     const auto m = image::read_metadata(t / "a.exr");
-    ASSERT_EQ(run("tarn render " + shared().scene + " --size 160x120 --samples 1 --camera " + m.at("tarn:camera") +
-                  " --sun-direction " + m.at("tarn:sun_direction") + " -o " + (t / "b.exr").string()).code, 0);
+    ASSERT_EQ(run("tarn render " + shared().scene + " --size 160x120 --samples 1 --camera " +
+                  m.at("tarn:camera") + " --sun-direction " + m.at("tarn:sun_direction") + " -o " +
+                  (t / "b.exr").string())
+                  .code,
+              0);
     const Image a = image::read_exr(t / "a.exr"), b = image::read_exr(t / "b.exr");
     double off = 0.0;
     for (std::size_t i = 0; i < a.radiance.size(); ++i)
@@ -179,12 +209,15 @@ TEST(Render, CameraHeadingIsTrueNorthAndPlacesAreLatLon) {
     const TempFolder t;
     const auto info = nlohmann::json::parse(run("tarn info " + shared().scene + " --json").out);
     const double lat = info["lakes"][0]["lat_deg"], lon = info["lakes"][0]["lon_deg"];
-    const Outcome o = run("tarn render " + shared().scene + " --size 16x16 --samples 1 --camera lat=" + std::to_string(lat) +
-                          ",lon=" + std::to_string(lon) + ",above_water=30,heading=90,pitch=-10 -o " + (t / "a.exr").string());
+    const Outcome o = run("tarn render " + shared().scene +
+                          " --size 16x16 --samples 1 --camera lat=" + std::to_string(lat) +
+                          ",lon=" + std::to_string(lon) +
+                          ",above_water=30,heading=90,pitch=-10 -o " + (t / "a.exr").string());
     ASSERT_EQ(o.code, 0) << o.err;
     const std::string camera = image::read_metadata(t / "a.exr").at("tarn:camera");
     std::smatch m;
-    ASSERT_TRUE(std::regex_search(camera, m, std::regex("x=([^,]*),y=([^,]*),z=([^,]*),dx=([^,]*),dy=([^,]*),dz=([^,]*)")));
+    ASSERT_TRUE(std::regex_search(
+        camera, m, std::regex("x=([^,]*),y=([^,]*),z=([^,]*),dx=([^,]*),dy=([^,]*),dz=([^,]*)")));
     EXPECT_NEAR(std::stod(m[1]), 0.0, 3.0);
     EXPECT_NEAR(std::stod(m[3]), 40.0, 1e-6);
     EXPECT_NEAR(std::stod(m[4]), std::cos(10 * M_PI / 180), 1e-4);
@@ -193,32 +226,44 @@ TEST(Render, CameraHeadingIsTrueNorthAndPlacesAreLatLon) {
 
 TEST(Render, ASettingsFileMeansTheSameAsTheOptions) {
     const TempFolder t;
-    std::ofstream(t / "lab.toml") << "ground-albedo = 0.5\nsky-radiance = \"0.2\"\nsun-direction = \"1,0,1\"\n"
-                                     "sun-irradiance = \"3.14159\"\nabsorption-per-m = \"0.1,0.05,0.02\"\n"
-                                     "backscattering-per-m = \"0\"\nindex = 1.34\nsize = \"64x48\"\nsamples = 1\n"
-                                     "camera = \"x=0,y=-300,z=60,dx=0,dy=1,dz=-0.3,ux=0,uy=0,uz=1,fov=50\"\n";
-    const std::string typed = "--ground-albedo 0.5 --sky-radiance 0.2 --sun-direction 1,0,1 --sun-irradiance 3.14159 "
-                              "--absorption-per-m 0.1,0.05,0.02 --backscattering-per-m 0 --index 1.34 --size 64x48 "
-                              "--samples 1 --camera x=0,y=-300,z=60,dx=0,dy=1,dz=-0.3,ux=0,uy=0,uz=1,fov=50";
-    const Outcome a = run("tarn render " + shared().scene + " --settings " + (t / "lab.toml").string() + " -o " + (t / "a.exr").string());
+    std::ofstream(t / "lab.toml")
+        << "ground-albedo = 0.5\nsky-radiance = \"0.2\"\nsun-direction = \"1,0,1\"\n"
+           "sun-irradiance = \"3.14159\"\nabsorption-per-m = \"0.1,0.05,0.02\"\n"
+           "backscattering-per-m = \"0\"\nindex = 1.34\nsize = \"64x48\"\nsamples = 1\n"
+           "camera = \"x=0,y=-300,z=60,dx=0,dy=1,dz=-0.3,ux=0,uy=0,uz=1,fov=50\"\n";
+    const std::string typed =
+        "--ground-albedo 0.5 --sky-radiance 0.2 --sun-direction 1,0,1 --sun-irradiance 3.14159 "
+        "--absorption-per-m 0.1,0.05,0.02 --backscattering-per-m 0 --index 1.34 --size 64x48 "
+        "--samples 1 --camera x=0,y=-300,z=60,dx=0,dy=1,dz=-0.3,ux=0,uy=0,uz=1,fov=50";
+    const Outcome a = run("tarn render " + shared().scene + " --settings " +
+                          (t / "lab.toml").string() + " -o " + (t / "a.exr").string());
     ASSERT_EQ(a.code, 0) << a.err;
-    ASSERT_EQ(run("tarn render " + shared().scene + " " + typed + " -o " + (t / "b.exr").string()).code, 0);
+    ASSERT_EQ(
+        run("tarn render " + shared().scene + " " + typed + " -o " + (t / "b.exr").string()).code,
+        0);
     EXPECT_TRUE(image::read_exr(t / "a.exr").radiance == image::read_exr(t / "b.exr").radiance);
     std::ofstream(t / "wrong.toml") << "ground-albebo = 0.5\n";
-    expect_one_line("tarn render " + shared().scene + " --settings " + (t / "wrong.toml").string() + " -o " + (t / "c.exr").string(),
+    expect_one_line("tarn render " + shared().scene + " --settings " + (t / "wrong.toml").string() +
+                        " -o " + (t / "c.exr").string(),
                     1, "wrong.toml: no option is called 'ground-albebo'");
-    expect_one_line("tarn render " + shared().scene + " --settings " + (t / "none.toml").string() + " -o " + (t / "c.exr").string(),
+    expect_one_line("tarn render " + shared().scene + " --settings " + (t / "none.toml").string() +
+                        " -o " + (t / "c.exr").string(),
                     1, "none.toml: cannot be read");
     // What is typed wins over the file.
-    ASSERT_EQ(run("tarn render " + shared().scene + " --settings " + (t / "lab.toml").string() + " --size 32x24 -o " + (t / "d.exr").string()).code, 0);
+    ASSERT_EQ(run("tarn render " + shared().scene + " --settings " + (t / "lab.toml").string() +
+                  " --size 32x24 -o " + (t / "d.exr").string())
+                  .code,
+              0);
     EXPECT_EQ(image::read_exr(t / "d.exr").width_px, 32);
 }
 
 TEST(Render, ReferenceGivesTheSamePictureAndPrintsTheDifference) {
     const TempFolder t;
-    const std::string common = "tarn render " + shared().scene + " --size 96x64 --samples 2 --camera overview ";
+    const std::string common =
+        "tarn render " + shared().scene + " --size 96x64 --samples 2 --camera overview ";
     ASSERT_EQ(run(common + "--reference -o " + (t / "ref.exr").string()).code, 0);
-    const Outcome o = run(common + "--against " + (t / "ref.exr").string() + " -o " + (t / "gpu.exr").string());
+    const Outcome o =
+        run(common + "--against " + (t / "ref.exr").string() + " -o " + (t / "gpu.exr").string());
     ASSERT_EQ(o.code, 0) << o.err;
     std::smatch m;
     ASSERT_TRUE(std::regex_search(o.out, m, std::regex("error mean ([0-9.]+) %"))) << o.out;
@@ -230,7 +275,8 @@ TEST(Render, WithoutAGpuItSaysSoInOneLine) {
     const TempFolder t;
     const std::string out = " --size 16x16 --samples 1 -o " + (t / "x.png").string();
     // No driver at all: libglvnd finds no vendor.
-    const std::string blind = "__EGL_VENDOR_LIBRARY_DIRS=/nonexistent __EGL_VENDOR_LIBRARY_FILENAMES= ";
+    const std::string blind =
+        "__EGL_VENDOR_LIBRARY_DIRS=/nonexistent __EGL_VENDOR_LIBRARY_FILENAMES= ";
     const Outcome none = run(blind + TARN_PROGRAM + " render " + shared().scene + out);
     EXPECT_EQ(none.code, 1);
     EXPECT_EQ(lines(none.err), 1) << none.err;
@@ -238,14 +284,18 @@ TEST(Render, WithoutAGpuItSaysSoInOneLine) {
     const Outcome doctor = run(blind + TARN_PROGRAM + " doctor");
     EXPECT_EQ(doctor.code, 1);
     EXPECT_NE(doctor.out.find("can NOT render here"), std::string::npos) << doctor.out;
-    EXPECT_EQ(run(blind + TARN_PROGRAM + " render " + shared().scene + " --reference" + out).code, 0);
+    EXPECT_EQ(run(blind + TARN_PROGRAM + " render " + shared().scene + " --reference" + out).code,
+              0);
     // A driver that is too old: Mesa told to offer OpenGL 3.3 only.
-    const Outcome old = run(std::string("MESA_GL_VERSION_OVERRIDE=3.3 ") + TARN_PROGRAM + " render " + shared().scene + out);
+    const Outcome old = run(std::string("MESA_GL_VERSION_OVERRIDE=3.3 ") + TARN_PROGRAM +
+                            " render " + shared().scene + out);
     EXPECT_EQ(old.code, 1);
     EXPECT_NE(old.err.find("OpenGL 4.5"), std::string::npos) << old.err;
-    const Outcome shaders = run(std::string("TARN_SHADERS=/nonexistent ") + TARN_PROGRAM + " render " + shared().scene + out);
+    const Outcome shaders = run(std::string("TARN_SHADERS=/nonexistent ") + TARN_PROGRAM +
+                                " render " + shared().scene + out);
     EXPECT_EQ(shaders.code, 1);
-    EXPECT_NE(shaders.err.find("shaders not found in /nonexistent"), std::string::npos) << shaders.err;
+    EXPECT_NE(shaders.err.find("shaders not found in /nonexistent"), std::string::npos)
+        << shaders.err;
 }
 
 TEST(Doctor, SaysWhatThereIs) {
@@ -264,12 +314,14 @@ TEST(Import, AFailureLeavesNoHalfSceneAndKeepsTheOlderOne) {
     const std::string before = test_support::read_file(t / "s/scene.json");
     EXPECT_EQ(run("tarn import " + shared().dem + " --level -50 -o " + scene).code, 1);
     // A full disk: files may grow to 64 KiB and no further.
-    const Outcome full = run("sh -c \"ulimit -f 64; trap '' XFSZ; exec " + std::string(TARN_PROGRAM) + " import " + shared().dem +
-                             " --level 12 -o " + scene + "\"");
+    const Outcome full =
+        run("sh -c \"ulimit -f 64; trap '' XFSZ; exec " + std::string(TARN_PROGRAM) + " import " +
+            shared().dem + " --level 12 -o " + scene + "\"");
     EXPECT_EQ(full.code, 1);
     EXPECT_EQ(lines(full.err), 1) << full.err;
     EXPECT_TRUE(test_support::read_file(t / "s/scene.json") == before);
-    EXPECT_EQ(std::distance(fs::directory_iterator(t.path()), {}), 1) << "something was left behind";
+    EXPECT_EQ(std::distance(fs::directory_iterator(t.path()), {}), 1)
+        << "something was left behind";
     EXPECT_EQ(run("tarn import " + shared().dem + " --level 12 -o " + scene).code, 0);
     EXPECT_TRUE(test_support::read_file(t / "s/scene.json") != before);
     EXPECT_EQ(std::distance(fs::directory_iterator(t.path()), {}), 1);
@@ -281,7 +333,8 @@ TEST(Import, CtrlCAndKillLeaveNoHalfScene) {
     Grid<float> z({3000, 3000});
     for (int r = 0; r < 3000; ++r)
         for (int c = 0; c < 3000; ++c)
-            z[{c, r}] = float(std::hypot(c - 1500.0, r - 1500.0) + 5.0 * std::sin(c * 0.01) * std::cos(r * 0.013));
+            z[{c, r}] = float(std::hypot(c - 1500.0, r - 1500.0) +
+                              5.0 * std::sin(c * 0.01) * std::cos(r * 0.013));
     const double g[6] = {500'000, 5, 0, 5'300'000, 0, -5};
     dem::write_elevations(t / "big.tif", z, "EPSG:32633", g, "");
     fs::create_directory(t / "work");
@@ -290,27 +343,35 @@ TEST(Import, CtrlCAndKillLeaveNoHalfScene) {
     for (const char* signal : {"INT", "INT", "INT", "KILL", "KILL", "KILL"})
         for (const char* delay : {"0.15", "0.6", "1.1"}) {
             // A child of its own process group: a shell's background jobs ignore Ctrl-C.
-            const Outcome o = run("timeout --signal=" + std::string(signal) + " " + delay + " " + TARN_PROGRAM + " import " +
-                                  (t / "big.tif").string() + " --level 700 -o " + scene);
+            const Outcome o =
+                run("timeout --signal=" + std::string(signal) + " " + delay + " " + TARN_PROGRAM +
+                    " import " + (t / "big.tif").string() + " --level 700 -o " + scene);
             interrupted += o.code != 0;
             if (fs::exists(scene))
                 EXPECT_EQ(run("tarn info " + scene).code, 0) << signal << " " << delay;
             if (std::string(signal) == "INT")
                 for (const auto& entry : fs::directory_iterator(t / "work"))
-                    EXPECT_EQ(entry.path().filename().string()[0], 's') << entry.path(); // nothing half
+                    EXPECT_EQ(entry.path().filename().string()[0], 's')
+                        << entry.path(); // nothing half
         }
     EXPECT_GT(interrupted, 3);
     EXPECT_EQ(run("tarn import " + (t / "big.tif").string() + " --level 700 -o " + scene).code, 0);
     EXPECT_EQ(run("tarn info " + scene).code, 0);
-    EXPECT_EQ(std::distance(fs::directory_iterator(t / "work"), {}), 1); // earlier remains are swept
+    EXPECT_EQ(std::distance(fs::directory_iterator(t / "work"), {}),
+              1); // earlier remains are swept
 }
 
 TEST(Install, RunsFromWhereItIsInstalled) {
     const TempFolder t;
     const fs::path build = fs::path(TARN_PROGRAM).parent_path().parent_path();
-    ASSERT_EQ(run("cmake --install " + build.string() + " --prefix " + (t / "usr").string()).code, 0);
+    ASSERT_EQ(run("cmake --install " + build.string() + " --prefix " + (t / "usr").string()).code,
+              0);
     const Outcome o = run((t / "usr/bin/tarn").string() + " doctor --json");
     EXPECT_EQ(o.code, 0) << o.err;
-    EXPECT_EQ(nlohmann::json::parse(o.out).at("shaders").get<std::string>(), (t / "usr/share/tarn/shaders").string());
-    EXPECT_EQ(run((t / "usr/bin/tarn").string() + " render " + shared().scene + " --size 16x16 --samples 1 -o " + (t / "a.png").string()).code, 0);
+    EXPECT_EQ(nlohmann::json::parse(o.out).at("shaders").get<std::string>(),
+              (t / "usr/share/tarn/shaders").string());
+    EXPECT_EQ(run((t / "usr/bin/tarn").string() + " render " + shared().scene +
+                  " --size 16x16 --samples 1 -o " + (t / "a.png").string())
+                  .code,
+              0);
 }

@@ -13,14 +13,19 @@ TEST(CameraGpu, PixelDirectionsAgreeWithTheReferenceAndTheScene) {
     for (int y = 0; y <= 20; ++y)
         for (int x = 0; x <= 30; ++x)
             places.emplace_back(x / 30.0f, y / 20.0f, 0, 0);
-    const auto vec = [](const glm::dvec3& v) { return text("vec3(", v.x, ", ", v.y, ", ", v.z, ")"); };
+    const auto vec = [](const glm::dvec3& v) {
+        return text("vec3(", v.x, ", ", v.y, ", ", v.z, ")");
+    };
     const test_support::GpuFunction on_gpu(
-        "lib/camera.glsl", text("result.xyz = pixel_direction(", vec(camera.forward), ", ", vec(camera.right), ", ",
-                                vec(camera.up), ", vec2(", half.x, ", ", half.y, "), x.xy);"));
+        "lib/camera.glsl",
+        text("result.xyz = pixel_direction(", vec(camera.forward), ", ", vec(camera.right), ", ",
+             vec(camera.up), ", vec2(", half.x, ", ", half.y, "), x.xy);"));
     const auto got = on_gpu(places);
     for (std::size_t i = 0; i < places.size(); ++i) {
-        const glm::dvec3 twin = reference::pixel_direction(camera.forward, camera.right, camera.up, half, glm::dvec2(places[i]));
-        const glm::dvec3 plain = glm::normalize(scene::pixel_direction(camera, 300.0 * places[i].x, 200.0 * places[i].y, 300, 200));
+        const glm::dvec3 twin = reference::pixel_direction(camera.forward, camera.right, camera.up,
+                                                           half, glm::dvec2(places[i]));
+        const glm::dvec3 plain = glm::normalize(
+            scene::pixel_direction(camera, 300.0 * places[i].x, 200.0 * places[i].y, 300, 200));
         ASSERT_LT(glm::length(twin - plain), 1e-7);
         ASSERT_LT(glm::length(glm::dvec3(got[i]) - twin), 1e-6);
     }

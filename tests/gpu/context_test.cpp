@@ -26,7 +26,8 @@ TEST(Shaders, EveryPassCompiles) {
     test_support::context();
     int passes = 0;
     for (const auto& entry : std::filesystem::directory_iterator(TARN_SHADER_ROOT "/passes")) {
-        EXPECT_NO_THROW(gpu::ComputeProgram(gpu::load_shader(TARN_SHADER_ROOT, "passes/" + entry.path().filename().string())))
+        EXPECT_NO_THROW(gpu::ComputeProgram(
+            gpu::load_shader(TARN_SHADER_ROOT, "passes/" + entry.path().filename().string())))
             << entry.path();
         ++passes;
     }
@@ -39,13 +40,16 @@ TEST(Shaders, ErrorsNameTheFileAndTheAsker) {
         gpu::expand_shader(TARN_SHADER_ROOT, "#version 450\n\n#include \"lib/nope.glsl\"\n", "<t>");
         FAIL();
     } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("asked for by <t>:3"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("asked for by <t>:3"), std::string::npos)
+            << error.what();
     }
     try {
         test_support::GpuFunction("lib/fresnel.glsl", "result.x = fresnel_dielektrik(x.x, x.y);");
         FAIL();
     } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("fresnel_dielektrik(x.x, x.y);>:"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("fresnel_dielektrik(x.x, x.y);>:"),
+                  std::string::npos)
+            << error.what();
     }
 }
 

@@ -19,7 +19,8 @@ template <class Exact>
 void expect_within_rounding(const std::string& name, Exact exact) {
     std::mt19937 random(20240501); // ONE generator for all draws
     std::uniform_real_distribution<float> cosine(0.0f, 1.0f), index(0.5f, 2.0f);
-    std::vector<glm::vec4> inputs = {{0, .75f, 0, 0}, {0, 1, 0, 0}, {1, 1, 0, 0}, {1e-6f, 1.333f, 0, 0}, {1, 1.333f, 0, 0}};
+    std::vector<glm::vec4> inputs = {
+        {0, .75f, 0, 0}, {0, 1, 0, 0}, {1, 1, 0, 0}, {1e-6f, 1.333f, 0, 0}, {1, 1.333f, 0, 0}};
     for (int i = 0; i < 100'000; ++i)
         inputs.emplace_back(cosine(random), index(random), 0, 0);
     const GpuFunction on_gpu("lib/fresnel.glsl", "result.x = " + name + "(x.x, x.y);");
@@ -29,7 +30,8 @@ void expect_within_rounding(const std::string& name, Exact exact) {
         const double value = exact(c, eta);
         const double allowed = 1e-6 + std::max(std::abs(exact(c, eta * (1.0 - rounding)) - value),
                                                std::abs(exact(c, eta * (1.0 + rounding)) - value));
-        ASSERT_NEAR(got[i].x, value, allowed) << name << " cos_i " << c << ", eta " << eta; // fails on NaN too
+        ASSERT_NEAR(got[i].x, value, allowed)
+            << name << " cos_i " << c << ", eta " << eta; // fails on NaN too
     }
 }
 
@@ -48,7 +50,8 @@ TEST(FresnelGpu, RefractedDirectionsAgree) {
     std::normal_distribution<float> normal;
     std::vector<glm::vec4> in;
     for (int i = 0; i < 20'000; ++i) {
-        const glm::vec3 d = glm::normalize(glm::vec3(normal(random), normal(random), normal(random)));
+        const glm::vec3 d =
+            glm::normalize(glm::vec3(normal(random), normal(random), normal(random)));
         const float eta = i % 2 ? 0.75f : 1.333f;
         if (eta * glm::length(glm::vec2(d)) < 0.999f)
             in.emplace_back(d, eta);

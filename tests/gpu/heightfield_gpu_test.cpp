@@ -16,7 +16,8 @@ using test_support::TestRay;
 namespace {
 
 /// A scene of given heights, all of its lower part flooded (levels do not matter to the walk).
-scene::Scene field(int cols, int rows, double spacing, const std::function<double(int, int)>& height, double level = -1e9) {
+scene::Scene field(int cols, int rows, double spacing,
+                   const std::function<double(int, int)>& height, double level = -1e9) {
     std::vector<float> z;
     for (int r = 0; r < rows; ++r)
         for (int c = 0; c < cols; ++c)
@@ -54,25 +55,26 @@ Verdict judge(const scene::Scene& scene, std::vector<TestRay> rays, bool with_wa
     for (std::size_t i = 0; i < rays.size(); ++i) {
         ++v.rays;
         const double length = glm::length(rays[i].direction);
-        const auto hit = reference::trace_field(scene.ground, with_water ? &scene.water : nullptr, rays[i].origin,
-                                                rays[i].direction, 1e9);
+        const auto hit = reference::trace_field(scene.ground, with_water ? &scene.water : nullptr,
+                                                rays[i].origin, rays[i].direction, 1e9);
         v.hits += hit.has_value();
-        // A miss or hit by less than a quantum is no mistake: lower and raise the ray by one; nor is
-        // one by a ten-thousandth of a cell sideways, at the field's rim and at needles.
+        // A miss or hit by less than a quantum is no mistake: lower and raise the ray by one; nor
+        // is one by a ten-thousandth of a cell sideways, at the field's rim and at needles.
         const auto shifted = [&](double dz, double dx = 0.0, double dy = 0.0) {
             return reference::trace_field(scene.ground, with_water ? &scene.water : nullptr,
-                                          rays[i].origin + glm::dvec3(dx, dy, dz), rays[i].direction, 1e9);
+                                          rays[i].origin + glm::dvec3(dx, dy, dz),
+                                          rays[i].direction, 1e9);
         };
         const double aside = 1e-4 * scene.ground.spacing_m;
         if (hit && !got[i].hit) {
-            v.missed += shifted(quantum) && shifted(0, aside) && shifted(0, -aside) && shifted(0, 0, aside) &&
-                        shifted(0, 0, -aside);
+            v.missed += shifted(quantum) && shifted(0, aside) && shifted(0, -aside) &&
+                        shifted(0, 0, aside) && shifted(0, 0, -aside);
             continue;
         }
         if (!hit) {
             if (got[i].hit)
-                v.invented += !shifted(-quantum) && !shifted(0, aside) && !shifted(0, -aside) && !shifted(0, 0, aside) &&
-                              !shifted(0, 0, -aside);
+                v.invented += !shifted(-quantum) && !shifted(0, aside) && !shifted(0, -aside) &&
+                              !shifted(0, 0, aside) && !shifted(0, 0, -aside);
             continue;
         }
         const double allowed = std::max(quantum, 1e-5 * hit->t * length);
@@ -88,7 +90,8 @@ Verdict judge(const scene::Scene& scene, std::vector<TestRay> rays, bool with_wa
         } else if (got[i].water != hit->water && with_water) {
             // Where the two lie within a quantum of each other either may be named.
             const glm::dvec3 p = hit->point;
-            v.other_surface += std::abs(scene.ground.elevation_m(p.x, p.y) - scene.lakes[0].level_m) > 2 * quantum;
+            v.other_surface +=
+                std::abs(scene.ground.elevation_m(p.x, p.y) - scene.lakes[0].level_m) > 2 * quantum;
         }
     }
     return v;
@@ -110,10 +113,17 @@ std::vector<TestRay> random_rays(const scene::Scene& scene, int count, unsigned 
         glm::dvec3 from(a, low + relief * (0.2 + 1.3 * unit(random)));
         glm::dvec3 to(b, low + relief * unit(random));
         switch (i % 8) {
-        case 0: to = {from.x, from.y, low - 1}; from.z = low + 2 * relief; break;     // straight down
-        case 1: to.z = from.z - 1e-4 * glm::length(b - a); break;                     // grazing
-        case 2: to.y = from.y; break;                                                // along grid rows
-        case 3: // along a grid line, exactly
+        case 0:
+            to = {from.x, from.y, low - 1};
+            from.z = low + 2 * relief;
+            break; // straight down
+        case 1:
+            to.z = from.z - 1e-4 * glm::length(b - a);
+            break; // grazing
+        case 2:
+            to.y = from.y;
+            break; // along grid rows
+        case 3:    // along a grid line, exactly
             from.y = to.y = g.y_m(std::floor(g.row(b.y)));
             break;
         case 4: { // through nodes, diagonally
@@ -126,7 +136,8 @@ std::vector<TestRay> random_rays(const scene::Scene& scene, int count, unsigned 
             from = {b, g.elevation_m(b.x, b.y) + 0.01 * g.spacing_m};
             to = from + glm::dvec3(a - b, relief * unit(random));
             break;
-        default: break;
+        default:
+            break;
         }
         if (glm::length(to - from) > 1e-9)
             rays.push_back({from, glm::normalize(to - from)});
@@ -155,25 +166,34 @@ TEST(HeightfieldGpu, MountainsWithAndWithoutTheLake) {
 TEST(HeightfieldGpu, SpikesAndCliffs) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
-    const scene::Scene spikes = field(100, 77, 1.0, [&](int, int) { return unit(random) < 0.02 ? 60.0 : 0.0; });
+    const scene::Scene spikes =
+        field(100, 77, 1.0, [&](int, int) { return unit(random) < 0.02 ? 60.0 : 0.0; });
     expect_exact("spikes", spikes, 40'000, false);
-    const scene::Scene cliffs = field(70, 131, 5.0, [](int c, int r) { return ((c / 9 + r / 7) % 2) * 300.0; });
+    const scene::Scene cliffs =
+        field(70, 131, 5.0, [](int c, int r) { return ((c / 9 + r / 7) % 2) * 300.0; });
     expect_exact("cliffs", cliffs, 40'000, false);
     const scene::Scene rough = field(64, 64, 1.0, [&](int, int) { return 10.0 * unit(random); });
     expect_exact("noise", rough, 40'000, false);
 }
 
 TEST(HeightfieldGpu, PlateauAtWaterLevelAndThinFilms) {
-    const scene::Scene plateau = field(60, 60, 10.0, [](int c, int r) {
-        return c < 20 ? 99.0 : c < 40 ? 100.0 : 100.0 + 0.001 * (r % 3); }, 100.0);
+    const scene::Scene plateau = field(
+        60, 60, 10.0,
+        [](int c, int r) { return c < 20   ? 99.0
+                                  : c < 40 ? 100.0
+                                           : 100.0 + 0.001 * (r % 3); },
+        100.0);
     expect_exact("plateau", plateau, 40'000, true);
 }
 
 TEST(HeightfieldGpu, SizesThatAreNoPowersOfTwoAndLongStrips) {
     std::mt19937 random(2);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
-    for (const auto& [cols, rows] : std::vector<std::pair<int, int>>{{2, 2}, {3, 2}, {5, 5}, {6, 17}, {2, 300}, {401, 3}, {65, 66}, {257, 130}})
-        expect_exact(text(cols, "x", rows).c_str(), field(cols, rows, 3.0, [&](int, int) { return 4.0 * unit(random); }), 8'000, false);
+    for (const auto& [cols, rows] : std::vector<std::pair<int, int>>{
+             {2, 2}, {3, 2}, {5, 5}, {6, 17}, {2, 300}, {401, 3}, {65, 66}, {257, 130}})
+        expect_exact(text(cols, "x", rows).c_str(),
+                     field(cols, rows, 3.0, [&](int, int) { return 4.0 * unit(random); }), 8'000,
+                     false);
 }
 
 TEST(HeightfieldGpu, FirstCrossingIsTheRootThatBisectionFinds) {
@@ -182,18 +202,21 @@ TEST(HeightfieldGpu, FirstCrossingIsTheRootThatBisectionFinds) {
     std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
     std::vector<glm::vec4> in;
     for (int i = 0; i < 200'000; ++i) {
-        const float above = std::pow(10.0f, 4 * unit(random)), below = (i % 3 ? 1.0f : 1e-4f) * unit(random) * above;
+        const float above = std::pow(10.0f, 4 * unit(random)),
+                    below = (i % 3 ? 1.0f : 1e-4f) * unit(random) * above;
         const float curve = i % 4 == 0 ? 1e-7f * unit(random) * above : 6.0f * unit(random) * above;
         in.emplace_back(above, below, curve, 0);
     }
-    const auto got = test_support::GpuFunction("lib/heightfield.glsl", "result.x = first_crossing(x.x, x.y, x.z);")(in);
+    const auto got = test_support::GpuFunction("lib/heightfield.glsl",
+                                               "result.x = first_crossing(x.x, x.y, x.z);")(in);
     int crossings = 0;
     for (std::size_t i = 0; i < in.size(); ++i) {
         const long double c = in[i].x, e = in[i].y, a = in[i].z, b = e - c - a;
         const auto f = [&](long double s) { return (a * s + b) * s + c; };
         long double high = 1.0L;
         bool crosses = e <= 0.0L;
-        if (!crosses && a > 0.0L && -b / (2 * a) > 0.0L && -b / (2 * a) < 1.0L && f(-b / (2 * a)) <= 0.0L) {
+        if (!crosses && a > 0.0L && -b / (2 * a) > 0.0L && -b / (2 * a) < 1.0L &&
+            f(-b / (2 * a)) <= 0.0L) {
             high = -b / (2 * a);
             crosses = true;
         }
@@ -213,8 +236,10 @@ TEST(HeightfieldGpu, FirstCrossingIsTheRootThatBisectionFinds) {
         }
         // The root is as certain as f over its slope there.
         const long double slope = std::abs(2 * a * low + b);
-        const long double certain = 4e-7L * (c + std::abs(a) + std::abs(b)) / std::max(slope, 1e-30L) + 2e-7L;
-        ASSERT_NEAR(got[i].x, double(low), double(std::min(certain, 1.0L))) << double(c) << " " << double(e) << " " << double(a);
+        const long double certain =
+            4e-7L * (c + std::abs(a) + std::abs(b)) / std::max(slope, 1e-30L) + 2e-7L;
+        ASSERT_NEAR(got[i].x, double(low), double(std::min(certain, 1.0L)))
+            << double(c) << " " << double(e) << " " << double(a);
     }
     EXPECT_GT(crossings, 50'000);
 }

@@ -12,7 +12,8 @@ std::vector<glm::vec4> directions(int count) {
     std::normal_distribution<float> normal;
     std::vector<glm::vec4> out = {{0, 0, 1, 0}, {0, 0, -1, 0}, {1, 0, 0, 0}};
     for (int i = 0; i < count; ++i)
-        out.emplace_back(glm::normalize(glm::vec3(normal(random), normal(random), 0.6f * normal(random))), 0);
+        out.emplace_back(
+            glm::normalize(glm::vec3(normal(random), normal(random), 0.6f * normal(random))), 0);
     return out;
 }
 } // namespace
@@ -21,12 +22,14 @@ TEST(SkyGpu, TableRadianceAgrees) {
     const glm::dvec3 sun = glm::normalize(glm::dvec3(0.6, -0.5, 0.7));
     const scene::Lighting light = scene::clear_sky(sun);
     test_support::context();
-    gpu::Texture2D table(GL_RGB32F, light.sky.azimuths, light.sky.elevations, 1, gpu::Filter::linear, "sky");
+    gpu::Texture2D table(GL_RGB32F, light.sky.azimuths, light.sky.elevations, 1,
+                         gpu::Filter::linear, "sky");
     table.upload(GL_RGB, GL_FLOAT, light.sky.radiance.data());
     const auto in = directions(20'000);
-    const test_support::GpuFunction on_gpu(
-        "lib/sky.glsl", text("result.rgb = sky_radiance(table, x.xyz, vec3(", sun.x, ", ", sun.y, ", ", sun.z, "));"),
-        "layout(binding = 2) uniform sampler2D table;\n");
+    const test_support::GpuFunction on_gpu("lib/sky.glsl",
+                                           text("result.rgb = sky_radiance(table, x.xyz, vec3(",
+                                                sun.x, ", ", sun.y, ", ", sun.z, "));"),
+                                           "layout(binding = 2) uniform sampler2D table;\n");
     table.bind(2);
     const auto got = on_gpu(in);
     double worst = 0.0;
@@ -50,7 +53,10 @@ TEST(SkyGpu, TheDiscHasItsSizeAndASoftEdge) {
     const auto got = test_support::GpuFunction(
         "lib/sky.glsl", "result.x = disc_share(x.xyz, vec3(0.0, 0.0, 1.0), 0.004654, 0.0005);")(in);
     for (std::size_t i = 0; i < in.size(); ++i)
-        ASSERT_NEAR(got[i].x, reference::disc_share(glm::normalize(glm::dvec3(in[i])), {0, 0, 1}, 0.004654, 0.0005), 2e-3);
+        ASSERT_NEAR(
+            got[i].x,
+            reference::disc_share(glm::normalize(glm::dvec3(in[i])), {0, 0, 1}, 0.004654, 0.0005),
+            2e-3);
     EXPECT_EQ(got[0].x, 1.0f);
     EXPECT_EQ(got[1000].x, 0.0f);
 }

@@ -1,4 +1,5 @@
-// Whole pictures: the GPU against the double-precision reference, and the shoreline against its curve.
+// Whole pictures: the GPU against the double-precision reference, and the shoreline against its
+// curve.
 #include "dem/import.hpp"
 #include "image/compare.hpp"
 #include "reference/heightfield.hpp"
@@ -34,22 +35,26 @@ scene::Scene from_data(const std::vector<std::string>& files, std::optional<doub
 
 /// Issue's limits: first hits within max(1 quantum, 1e-5 of the distance) for all but edge pixels,
 /// mean relative radiance error at most 1 %; the 99th percentile is held to 5 % besides.
-void expect_same_picture(const scene::Scene& scene, const scene::View& view, const std::string& name) {
+void expect_same_picture(const scene::Scene& scene, const scene::View& view,
+                         const std::string& name) {
     test_support::context();
     const Image expected = reference::trace(scene, view, {});
     const Image got = render::Renderer(scene).draw(view);
     const image::Difference d = image::compare(got, expected);
-    const image::DistanceDifference z = image::compare_distances(got, expected, scene.ground.scale_m, 1e-5);
+    const image::DistanceDifference z =
+        image::compare_distances(got, expected, scene.ground.scale_m, 1e-5);
     EXPECT_TRUE(d.finite) << name;
     EXPECT_LE(d.mean_relative, 0.01) << name;
     EXPECT_LE(d.p99_relative, 0.05) << name;
     EXPECT_EQ(z.different, 0u) << name << ": worst " << z.worst_m << " m";
     EXPECT_LT(z.edges, z.pixels / 3) << name << ": too few pixels were judged";
-    std::printf("%-28s mean %.5f %%, 99th %.4f %%, PSNR %.1f dB, %zu of %zu edge pixels\n", name.c_str(),
-                100 * d.mean_relative, 100 * d.p99_relative, d.psnr_db, z.edges, z.pixels);
+    std::printf("%-28s mean %.5f %%, 99th %.4f %%, PSNR %.1f dB, %zu of %zu edge pixels\n",
+                name.c_str(), 100 * d.mean_relative, 100 * d.p99_relative, d.psnr_db, z.edges,
+                z.pixels);
 }
 
-void expect_same_presets(const scene::Scene& scene, const std::string& name, const std::vector<std::string>& presets) {
+void expect_same_presets(const scene::Scene& scene, const std::string& name,
+                         const std::vector<std::string>& presets) {
     const glm::dvec3 sun = glm::normalize(glm::dvec3(0.5, 0.4, 0.6));
     for (const std::string& preset : presets) {
         scene::View view;
@@ -63,19 +68,24 @@ void expect_same_presets(const scene::Scene& scene, const std::string& name, con
 } // namespace
 
 TEST(Picture, MountainLakeAboveAndBelow) {
-    expect_same_presets(scene::mountain_lake(401), "mountain lake", {"overview", "shore", "top", "dive"});
+    expect_same_presets(scene::mountain_lake(401), "mountain lake",
+                        {"overview", "shore", "top", "dive"});
 }
 
-TEST(Picture, BowlAboveAndBelow) { expect_same_presets(scene::bowl(201), "bowl", {"overview", "shore", "dive"}); }
+TEST(Picture, BowlAboveAndBelow) {
+    expect_same_presets(scene::bowl(201), "bowl", {"overview", "shore", "dive"});
+}
 
 TEST(Picture, RotomaAboveAndBelow) {
     TARN_NEEDS_DATA("rotoma/rotoma_topobathy_32m.tif");
-    expect_same_presets(from_data({"rotoma/rotoma_topobathy_32m.tif"}, 313.31), "rotoma", {"overview", "shore", "top", "dive"});
+    expect_same_presets(from_data({"rotoma/rotoma_topobathy_32m.tif"}, 313.31), "rotoma",
+                        {"overview", "shore", "top", "dive"});
 }
 
 TEST(Picture, CraterLakeWhoseBedIsUnknown) {
     TARN_NEEDS_DATA("crater_lake/ned_n43w123.tif");
-    const scene::Scene scene = from_data({"crater_lake/ned_n43w124.tif", "crater_lake/ned_n43w123.tif"}, {});
+    const scene::Scene scene =
+        from_data({"crater_lake/ned_n43w124.tif", "crater_lake/ned_n43w123.tif"}, {});
     EXPECT_EQ(scene.lakes[0].bed, Bed::unknown);
     expect_same_presets(scene, "crater lake", {"overview", "shore", "dive"});
 }
@@ -83,14 +93,16 @@ TEST(Picture, CraterLakeWhoseBedIsUnknown) {
 TEST(Picture, LowSunSchlickOrthophotoAndLab) {
     scene::Scene scene = scene::mountain_lake(257);
     scene::View view;
-    view.settings = {.width_px = 200, .height_px = 150, .samples = 2, .fresnel = scene::Fresnel::schlick};
+    view.settings = {
+        .width_px = 200, .height_px = 150, .samples = 2, .fresnel = scene::Fresnel::schlick};
     view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(1, 0.2, 0.12)));
     view.camera = scene::look({-2500, -4500, 1900}, 25, -18, 50);
     expect_same_picture(scene, view, "low sun, Schlick");
     view.lighting = scene::uniform_sky({0.3, 0.3, 1}, {2, 2, 2}, {0.3, 0.4, 0.5});
     view.settings.ground_albedo = 0.5;
     view.settings.fresnel = scene::Fresnel::exact;
-    scene.optics = {.name = "lab", .absorption_per_m = {0.5, 0.2, 0.05}, .backscattering_per_m = {0, 0, 0}};
+    scene.optics = {
+        .name = "lab", .absorption_per_m = {0.5, 0.2, 0.05}, .backscattering_per_m = {0, 0, 0}};
     expect_same_picture(scene, view, "lab");
     view.settings.ground_albedo.reset();
     Ortho ortho{.west_m = -4000, .north_m = 3000, .spacing_m = 13.0};
@@ -107,7 +119,10 @@ TEST(Picture, LowSunSchlickOrthophotoAndLab) {
 TEST(Picture, TheTankHasItsExactRadiancesOnTheGpuToo) {
     test_support::context();
     scene::Scene tank = scene::tank();
-    tank.optics = {.name = "lab", .absorption_per_m = {0, 0, 0}, .backscattering_per_m = {0, 0, 0}, .index = 1.333};
+    tank.optics = {.name = "lab",
+                   .absorption_per_m = {0, 0, 0},
+                   .backscattering_per_m = {0, 0, 0},
+                   .index = 1.333};
     render::Renderer renderer(tank);
     scene::View view;
     view.lighting = scene::uniform_sky({1, 0, 1}, glm::dvec3(M_PI), glm::dvec3(0));
@@ -120,17 +135,19 @@ TEST(Picture, TheTankHasItsExactRadiancesOnTheGpuToo) {
 }
 
 TEST(Picture, WhiteFurnaceNeverGainsEnergy) {
-    // An even sky of radiance 1, no sun, white ground, clear water: nothing is brighter than the sky
-    // from above; below, nothing is brighter than n^2.
+    // An even sky of radiance 1, no sun, white ground, clear water: nothing is brighter than the
+    // sky from above; below, nothing is brighter than n^2.
     test_support::context();
     scene::Scene scene = scene::bowl(129);
-    scene.optics = {.name = "lab", .absorption_per_m = {0, 0, 0}, .backscattering_per_m = {0, 0, 0}};
+    scene.optics = {
+        .name = "lab", .absorption_per_m = {0, 0, 0}, .backscattering_per_m = {0, 0, 0}};
     render::Renderer renderer(scene);
     scene::View view;
     view.lighting = scene::uniform_sky({0, 0, 1}, glm::dvec3(0), glm::dvec3(1));
     view.settings = {.width_px = 96, .height_px = 64, .samples = 1, .ground_albedo = 1.0};
-    for (const auto& [camera, most] : {std::pair{scene::look({0, -700, 200}, 0, -15, 60), 1.0},
-                                       std::pair{scene::look({0, 0, 3}, 0, 20, 100), 1.333 * 1.333}}) {
+    for (const auto& [camera, most] :
+         {std::pair{scene::look({0, -700, 200}, 0, -15, 60), 1.0},
+          std::pair{scene::look({0, 0, 3}, 0, 20, 100), 1.333 * 1.333}}) {
         view.camera = camera;
         for (const glm::vec3& c : renderer.draw(view).radiance) {
             ASSERT_LE(c.g, most + 1e-4);
@@ -156,7 +173,8 @@ TEST(Shoreline, IsTheExactCurveToATenthOfACell) {
                     const Node here{c, r};
                     if (codes[here] == no_water_code || codes[other] == no_water_code)
                         continue;
-                    const double a = scene.ground.elevation_m(here) - level, b = scene.ground.elevation_m(other) - level;
+                    const double a = scene.ground.elevation_m(here) - level,
+                                 b = scene.ground.elevation_m(other) - level;
                     if ((a < 0) == (b < 0))
                         continue;
                     const Node wet = a < 0 ? here : other, dry = a < 0 ? other : here;
@@ -170,7 +188,8 @@ TEST(Shoreline, IsTheExactCurveToATenthOfACell) {
                 const double f = (low[i] + high[i]) / 2;
                 const double col = edges[i].wet.col + f * (edges[i].dry.col - edges[i].wet.col);
                 const double row = edges[i].wet.row + f * (edges[i].dry.row - edges[i].wet.row);
-                rays.push_back({{scene.ground.x_m(col), scene.ground.y_m(row), level + 500}, {0, 0, -1}});
+                rays.push_back(
+                    {{scene.ground.x_m(col), scene.ground.y_m(row), level + 500}, {0, 0, -1}});
             }
             const auto hits = test_support::trace_on_gpu(scene, rays, true);
             for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -182,7 +201,8 @@ TEST(Shoreline, IsTheExactCurveToATenthOfACell) {
         for (std::size_t i = 0; i < edges.size(); ++i)
             worst = std::max(worst, std::abs(low[i] - edges[i].exact));
         EXPECT_LE(worst, 0.1) << name;
-        std::printf("%-14s shore crosses %zu edges, worst %.5f cell from the exact curve\n", name, edges.size(), worst);
+        std::printf("%-14s shore crosses %zu edges, worst %.5f cell from the exact curve\n", name,
+                    edges.size(), worst);
     };
     check(scene::mountain_lake(301), "mountain lake");
     check(scene::bowl(151), "bowl");
@@ -190,8 +210,8 @@ TEST(Shoreline, IsTheExactCurveToATenthOfACell) {
         check(from_data({"rotoma/rotoma_topobathy_32m.tif"}, 313.31), "rotoma");
 }
 
-// Straight down on random places of the whole field: water is drawn exactly where a wet cell's level
-// stands above the ground, and nowhere else (lower basins that are not connected stay dry).
+// Straight down on random places of the whole field: water is drawn exactly where a wet cell's
+// level stands above the ground, and nowhere else (lower basins that are not connected stay dry).
 TEST(Shoreline, NoWaterOutsideTheLake) {
     TARN_NEEDS_DATA("rotoma/rotoma_topobathy_32m.tif");
     const scene::Scene scene = from_data({"rotoma/rotoma_topobathy_32m.tif"}, 313.31);
@@ -201,8 +221,10 @@ TEST(Shoreline, NoWaterOutsideTheLake) {
     const Heightfield& g = scene.ground;
     constexpr int lattice = 700; // one place in each square of a lattice
     for (int i = 0; i < lattice * lattice; ++i) {
-        const double u = (i % lattice + unit(random)) / lattice, v = (i / lattice + unit(random)) / lattice;
-        rays.push_back({{g.west_m + u * (g.east_m() - g.west_m), g.south_m() + v * (g.north_m - g.south_m()), 2000.0},
+        const double u = (i % lattice + unit(random)) / lattice,
+                     v = (i / lattice + unit(random)) / lattice;
+        rays.push_back({{g.west_m + u * (g.east_m() - g.west_m),
+                         g.south_m() + v * (g.north_m - g.south_m()), 2000.0},
                         {0, 0, -1}});
     }
     const auto hits = test_support::trace_on_gpu(scene, rays, true);
@@ -225,6 +247,7 @@ TEST(Shoreline, NoWaterOutsideTheLake) {
         lower_and_dry += !hits[i].water && land < level;
     }
     EXPECT_GT(lower_and_dry, 1000); // the north of the tile lies lower and stays dry
-    const double area = double(wet) / double(rays.size()) * (g.east_m() - g.west_m) * (g.north_m - g.south_m());
+    const double area =
+        double(wet) / double(rays.size()) * (g.east_m() - g.west_m) * (g.north_m - g.south_m());
     EXPECT_NEAR(area, scene.lakes[0].area_m2, 0.02 * scene.lakes[0].area_m2); // drawn = counted
 }

@@ -28,9 +28,10 @@ inline std::vector<TestHit> trace_on_gpu(const scene::Scene& scene, std::vector<
     const render::Renderer renderer(scene);
     const GpuFunction trace(
         "lib/heightfield.glsl",
-        text("Hit hit; Ray ray = ray_from(ivec2(0), x.xyz, y.xyz, view.grid.z); bool found = trace_field(heights, "
-             "maxima, field_of(view), ray, float(", t_max, "), ",
-             with_water ? "true" : "false",
+        text("Hit hit; Ray ray = ray_from(ivec2(0), x.xyz, y.xyz, view.grid.z); bool found = "
+             "trace_field(heights, "
+             "maxima, field_of(view), ray, float(",
+             t_max, "), ", with_water ? "true" : "false",
              ", hit);\n    if (found) result = vec4(hit.t, hit.water ? 2.0 : 1.0, "
              "float(hit.cell.x) + hit.inside.x, float(hit.cell.y) + hit.inside.y);"),
         "layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;\n"

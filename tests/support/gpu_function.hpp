@@ -46,18 +46,19 @@ public:
 private:
     static gpu::ShaderSource source(const std::string& library, const std::string& body,
                                     const std::string& head) {
-        return gpu::expand_shader(TARN_SHADER_ROOT,
-                                  text("#version 450 core\n#include \"", library, "\"\n",
-                                       "layout(local_size_x = 64) in;\n"
-                                       "layout(binding = 5, std430) readonly buffer In { vec4 xs[]; };\n"
-                                       "layout(binding = 6, std430) readonly buffer In2 { vec4 ys[]; };\n"
-                                       "layout(binding = 7, std430) writeonly buffer Out { vec4 zs[]; };\n",
-                                       head,
-                                       "\nvoid main() {\n    uint i = gl_GlobalInvocationID.x;\n"
-                                       "    if (i >= xs.length()) return;\n"
-                                       "    vec4 x = xs[i], y = ys[i], result = vec4(0.0);\n    ",
-                                       body, "\n    zs[i] = result;\n}\n"),
-                                  "<" + body + ">");
+        return gpu::expand_shader(
+            TARN_SHADER_ROOT,
+            text("#version 450 core\n#include \"", library, "\"\n",
+                 "layout(local_size_x = 64) in;\n"
+                 "layout(binding = 5, std430) readonly buffer In { vec4 xs[]; };\n"
+                 "layout(binding = 6, std430) readonly buffer In2 { vec4 ys[]; };\n"
+                 "layout(binding = 7, std430) writeonly buffer Out { vec4 zs[]; };\n",
+                 head,
+                 "\nvoid main() {\n    uint i = gl_GlobalInvocationID.x;\n"
+                 "    if (i >= xs.length()) return;\n"
+                 "    vec4 x = xs[i], y = ys[i], result = vec4(0.0);\n    ",
+                 body, "\n    zs[i] = result;\n}\n"),
+            "<" + body + ">");
     }
     gpu::ComputeProgram program_;
 };

@@ -22,7 +22,8 @@ TEST(Heightfield, ErrorIsAtMostHalfAStep) {
                 ASSERT_NEAR(field.elevation_m(Node{col, row}), input[std::size_t(row * 64 + col)],
                             field.scale_m * 0.5000001);
         EXPECT_GE(*std::min_element(field.codes.values.begin(), field.codes.values.end()), spare);
-        EXPECT_LE(*std::max_element(field.codes.values.begin(), field.codes.values.end()), 65535 - spare);
+        EXPECT_LE(*std::max_element(field.codes.values.begin(), field.codes.values.end()),
+                  65535 - spare);
     }
 }
 
@@ -45,7 +46,8 @@ TEST(Heightfield, BilinearElevationIsExactForABilinearFunction) {
             const double c = (x - 100.0) / 10.0, r = (1000.0 - y) / 10.0;
             EXPECT_NEAR(field.elevation_m(x, y), 3 + 2 * c + 5 * r + 0.5 * c * r, field.scale_m);
         }
-    EXPECT_DOUBLE_EQ(field.elevation_m(0.0, 2000.0), field.elevation_m(Node{0, 0})); // outside: the edge
+    EXPECT_DOUBLE_EQ(field.elevation_m(0.0, 2000.0),
+                     field.elevation_m(Node{0, 0})); // outside: the edge
 }
 
 TEST(Heightfield, RefusesWhatItsContractForbids) {
@@ -60,8 +62,9 @@ TEST(Heightfield, RefusesWhatItsContractForbids) {
         quantise(hole, {3, 2}, 1.0);
         FAIL();
     } catch (const Error& error) {
-        EXPECT_STREQ(error.what(), "elevation at column 1, row 1 is not finite; fill or mask no-data "
-                                   "cells before quantising");
+        EXPECT_STREQ(error.what(),
+                     "elevation at column 1, row 1 is not finite; fill or mask no-data "
+                     "cells before quantising");
     }
 }
 
@@ -79,5 +82,6 @@ TEST(Bed, WordsRoundTrip) {
 
 TEST(ProgressReport, StopsWorkWhenTheListenerSaysSo) {
     Progress{}.report(0.5, "no listener");
-    EXPECT_THROW(Progress([](double, const std::string&) { return false; }).report(0.5, "x"), Cancelled);
+    EXPECT_THROW(Progress([](double, const std::string&) { return false; }).report(0.5, "x"),
+                 Cancelled);
 }

@@ -68,8 +68,8 @@ TEST(Fill, AFloorKeepsALakeFromRunningOutOverAnUnseenDam) {
 }
 
 TEST(Fill, TheLargestClosedBasinIsTheLakeNotTheOpenLowland) {
-    const Grid<float> z = picture({"1111111111", "1111111111", "9999999999", "9922299999", "9922299119",
-                                   "9999999119", "9999999999"});
+    const Grid<float> z = picture({"1111111111", "1111111111", "9999999999", "9922299999",
+                                   "9922299119", "9999999119", "9999999999"});
     const auto basins = find_basins(z, Grid<unsigned char>(z.size), 3.0);
     ASSERT_EQ(basins.size(), 3u);
     EXPECT_EQ(basins[0].nodes, 20u);
@@ -140,7 +140,8 @@ TEST(Water, ShowsInTheLakeAndNowhereElse) {
         Grid<float> z({cols, rows});
         for (float& v : z.values)
             v = float(step(random)); // few values, so that nodes AT the level are common
-        const double level = double(*rc::gen::inRange(1, 12)) + (*rc::gen::inRange(0, 2) ? 0.0 : 0.37);
+        const double level =
+            double(*rc::gen::inRange(1, 12)) + (*rc::gen::inRange(0, 2) ? 0.0 : 0.37);
         const auto basins = find_basins(z, Grid<unsigned char>(z.size), level);
         RC_PRE(!basins.empty());
         WetLake lake{level, fill_from(z, Grid<unsigned char>(z.size), level, basins[0].seed)};
@@ -200,7 +201,8 @@ TEST(Statistics, OfTheBowlAreThoseOfItsFormula) {
     Grid<float> z({side, side});
     for (int r = 0; r < side; ++r)
         for (int c = 0; c < side; ++c)
-            z[{c, r}] = float(40.0 * (std::pow((c - 150) * s, 2) + std::pow((r - 150) * s, 2)) / 250'000.0);
+            z[{c, r}] =
+                float(40.0 * (std::pow((c - 150) * s, 2) + std::pow((r - 150) * s, 2)) / 250'000.0);
     for (int r = 148; r <= 152; ++r) // an island of 5 x 5 nodes off the middle
         for (int c = 118; c <= 122; ++c)
             z[{c, r}] = 15.0f;
@@ -244,7 +246,9 @@ TEST(Statistics, TrueAreaIsTheGeodesicOne) {
     record.level_m = 10.0;
     measure(record, ground, lake.wet, frame);
     std::vector<GeoPoint> outline; // the outer edges of the wet nodes' squares, densely
-    const auto add = [&](double c, double r) { outline.push_back(geo::to_geo(frame, {c * 100, -r * 100})); };
+    const auto add = [&](double c, double r) {
+        outline.push_back(geo::to_geo(frame, {c * 100, -r * 100}));
+    };
     for (int i = 0; i < 200; ++i)
         add(0.5 + i, 0.5);
     for (int i = 0; i < 150; ++i)
@@ -276,7 +280,8 @@ TEST(Bed, BathymetryIsReadAsDepthsOfEitherSignOrAsElevations) {
         merge_bathymetry(ground, wet, 100.0, survey, kind);
         return ground;
     };
-    const auto a = apply(1, 0, BathymetryKind::automatic), b = apply(-1, 0, BathymetryKind::automatic);
+    const auto a = apply(1, 0, BathymetryKind::automatic),
+               b = apply(-1, 0, BathymetryKind::automatic);
     const auto c = apply(-1, 100, BathymetryKind::automatic);
     for (std::size_t i = 0; i < z.values.size(); ++i) {
         EXPECT_FLOAT_EQ(a.values[i], b.values[i]);
@@ -291,7 +296,9 @@ TEST(Bed, BathymetryIsReadAsDepthsOfEitherSignOrAsElevations) {
         previous = a[Node(k, 20)];
     }
     Grid<float> ground = z;
-    EXPECT_THROW(merge_bathymetry(ground, wet, 100.0, Grid<float>(z.size, NAN), BathymetryKind::depth), Error);
+    EXPECT_THROW(
+        merge_bathymetry(ground, wet, 100.0, Grid<float>(z.size, NAN), BathymetryKind::depth),
+        Error);
 }
 
 TEST(Bed, RoomForUnknownDepthPutsTheShoreMidwayBetweenNodes) {

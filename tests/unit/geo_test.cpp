@@ -35,8 +35,8 @@ double disagreement(const geo::Frame& frame, const OGRSpatialReference& projecte
             const GeoPoint back = geo::to_geo(frame, {x, y});
             worst = std::max(worst, std::hypot(there.x_m - x, there.y_m - y));
             worst = std::max(worst, std::hypot((back.lat_deg - lat) * 110'600.0,
-                                               std::remainder(back.lon_deg - lon, 360.0) * 111'300.0 *
-                                                   std::cos(lat * M_PI / 180)));
+                                               std::remainder(back.lon_deg - lon, 360.0) *
+                                                   111'300.0 * std::cos(lat * M_PI / 180)));
         }
     return worst;
 }
@@ -44,8 +44,9 @@ double disagreement(const geo::Frame& frame, const OGRSpatialReference& projecte
 } // namespace
 
 TEST(Frame, LocalFrameAndGdalAgreeToAMillimetre) {
-    for (const GeoPoint centre : {GeoPoint{42.94, -122.11}, GeoPoint{-38.05, 176.58}, GeoPoint{0.0, 0.0},
-                                  GeoPoint{67.9, 13.1}, GeoPoint{-34.0, 179.99}, GeoPoint{82.5, -40.0}}) {
+    for (const GeoPoint centre :
+         {GeoPoint{42.94, -122.11}, GeoPoint{-38.05, 176.58}, GeoPoint{0.0, 0.0},
+          GeoPoint{67.9, 13.1}, GeoPoint{-34.0, 179.99}, GeoPoint{82.5, -40.0}}) {
         const geo::Frame frame = geo::local_frame(centre);
         EXPECT_LT(disagreement(frame, crs(frame.proj), 150'000.0), 1e-3)
             << centre.lat_deg << "," << centre.lon_deg;
@@ -58,10 +59,11 @@ TEST(Frame, GridsThatAreKeptRoundTripToACentimetre) {
         double easting, northing;
     };
     // The last ones have datums some hundred metres from WGS 84: Airy, Bessel, Clarke ellipsoids.
-    for (const Place place : {Place{"EPSG:2193", 1914605, 5783222}, Place{"EPSG:32615", 520000, 4230000},
-                              Place{"EPSG:26920", 450000, 4930000}, Place{"EPSG:3071", 550000, 420000},
-                              Place{"EPSG:27700", 325000, 215000}, Place{"EPSG:31467", 3500000, 5300000},
-                              Place{"EPSG:32733", 300000, 6230000}, Place{"EPSG:2056", 0, 0}}) {
+    for (const Place place :
+         {Place{"EPSG:2193", 1914605, 5783222}, Place{"EPSG:32615", 520000, 4230000},
+          Place{"EPSG:26920", 450000, 4930000}, Place{"EPSG:3071", 550000, 420000},
+          Place{"EPSG:27700", 325000, 215000}, Place{"EPSG:31467", 3500000, 5300000},
+          Place{"EPSG:32733", 300000, 6230000}, Place{"EPSG:2056", 0, 0}}) {
         const OGRSpatialReference projected = crs(place.crs);
         auto frame = dem::transverse_mercator(projected);
         if (std::string(place.crs) == "EPSG:2056") { // Swiss oblique Mercator: not for keeping
@@ -86,7 +88,8 @@ TEST(Frame, ScaleAndConvergenceMatchTheirDefinitions) {
     // A step to true north moves west of grid north by the convergence.
     const GeoPoint here = geo::to_geo(utm, {0, 0});
     const ScenePoint north = geo::to_scene(utm, {here.lat_deg + 1e-3, here.lon_deg});
-    EXPECT_NEAR(std::atan2(-north.x_m, north.y_m) * 180 / M_PI, geo::convergence_deg(utm, {0, 0}), 1e-4);
+    EXPECT_NEAR(std::atan2(-north.x_m, north.y_m) * 180 / M_PI, geo::convergence_deg(utm, {0, 0}),
+                1e-4);
 }
 
 TEST(Frame, RefusesWhatIsNotOnEarth) {
@@ -107,12 +110,14 @@ TEST(Geodesic, AreaOfASquareDegreeAtTheEquator) {
     // The polygon's northern edge is a geodesic, which lies outside the parallel by a little.
     const double area = geo::geodesic_area_m2({{0, 0}, {0, 1}, {1, 1}, {1, 0}});
     EXPECT_NEAR(area / strip, 1.0, 1e-4);
-    EXPECT_DOUBLE_EQ(area, geo::geodesic_area_m2({{1, 0}, {1, 1}, {0, 1}, {0, 0}})); // either way round
+    EXPECT_DOUBLE_EQ(area,
+                     geo::geodesic_area_m2({{1, 0}, {1, 1}, {0, 1}, {0, 0}})); // either way round
 }
 
 TEST(Sun, AgreesWithTheLowPrecisionAlmanac) {
     // Astronomical Almanac, "low precision formulas for the Sun" (good to .01 degree 1950-2050).
-    for (const GeoPoint place : {GeoPoint{42.94, -122.11}, GeoPoint{-38.05, 176.58}, GeoPoint{0, 0}, GeoPoint{69, 20}})
+    for (const GeoPoint place :
+         {GeoPoint{42.94, -122.11}, GeoPoint{-38.05, 176.58}, GeoPoint{0, 0}, GeoPoint{69, 20}})
         for (double jd = 2461000.5; jd < 2461365.5; jd += 13.37) {
             const double n = jd - 2451545.0, rad = M_PI / 180;
             const double g = (357.528 + 0.9856003 * n) * rad, L = 280.460 + 0.9856474 * n;
@@ -122,12 +127,17 @@ TEST(Sun, AgreesWithTheLowPrecisionAlmanac) {
             const double dec = std::asin(std::sin(epsilon) * std::sin(lambda));
             const double gmst = 280.46061837 + 360.98564736629 * n;
             const double hour = (gmst + place.lon_deg) * rad - ra, lat = place.lat_deg * rad;
-            const double elevation = std::asin(std::sin(lat) * std::sin(dec) + std::cos(lat) * std::cos(dec) * std::cos(hour));
+            const double elevation = std::asin(std::sin(lat) * std::sin(dec) +
+                                               std::cos(lat) * std::cos(dec) * std::cos(hour));
             const double azimuth = std::atan2(-std::sin(hour) * std::cos(dec),
-                                              std::sin(dec) * std::cos(lat) - std::cos(dec) * std::sin(lat) * std::cos(hour));
+                                              std::sin(dec) * std::cos(lat) -
+                                                  std::cos(dec) * std::sin(lat) * std::cos(hour));
             const geo::SunPosition sun = geo::sun_position(place, jd);
             EXPECT_NEAR(sun.elevation_deg, elevation / rad, 0.03) << jd;
-            EXPECT_NEAR(std::remainder(sun.azimuth_deg - azimuth / rad, 360.0) * std::cos(elevation), 0.0, 0.05) << jd;
+            EXPECT_NEAR(std::remainder(sun.azimuth_deg - azimuth / rad, 360.0) *
+                            std::cos(elevation),
+                        0.0, 0.05)
+                << jd;
         }
 }
 
@@ -136,9 +146,10 @@ TEST(Time, ReadsWhatPeopleWrite) {
     EXPECT_NEAR(geo::parse_time("2000-01-01T12:00Z", greenwich), 2451545.0, 1e-8);
     EXPECT_NEAR(geo::parse_time("2000-01-01 14:00:00+02:00", greenwich), 2451545.0, 1e-8);
     EXPECT_NEAR(geo::parse_time("2000-01-01T06:30-0530", greenwich), 2451545.0, 1e-8);
-    EXPECT_NEAR(geo::parse_time("2000-01-01T18:00", east), 2451545.0, 1e-8); // solar time: 6 h ahead
+    EXPECT_NEAR(geo::parse_time("2000-01-01T18:00", east), 2451545.0,
+                1e-8); // solar time: 6 h ahead
     EXPECT_EQ(geo::format_time(2451545.0), "2000-01-01T12:00:00Z");
-    for (const char* wrong : {"", "noon", "2000-13-01T12:00Z", "2000-01-32T12:00Z", "2000-01-01T25:00Z",
-                              "2000-01-01T12:60Z", "2000-01-01T12:00X"})
+    for (const char* wrong : {"", "noon", "2000-13-01T12:00Z", "2000-01-32T12:00Z",
+                              "2000-01-01T25:00Z", "2000-01-01T12:60Z", "2000-01-01T12:00X"})
         EXPECT_THROW(geo::parse_time(wrong, greenwich), Error) << wrong;
 }

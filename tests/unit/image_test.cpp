@@ -52,7 +52,8 @@ TEST(Compare, DistancesAreJudgedAwayFromEdges) {
     Image a = flat(20, 20, 1.0f), b = a;
     a.distance_m[205] += 0.5f; // (5, 10)
     for (int y = 0; y < 20; ++y)
-        b.distance_m[std::size_t(y) * 20 + 15] = std::numeric_limits<float>::infinity(); // a line of sky
+        b.distance_m[std::size_t(y) * 20 + 15] =
+            std::numeric_limits<float>::infinity(); // a line of sky
     const DistanceDifference d = compare_distances(a, b, 0.01, 1e-5);
     EXPECT_EQ(d.pixels, 400u);
     EXPECT_EQ(d.edges, 60u);
@@ -116,10 +117,14 @@ TEST(Files, PngKeepsPixelsAndMetadataAndLeavesNothingElse) {
 }
 
 TEST(Annotate, TextAndBarsChangeThePicture) {
-    Picture p{.width_px = 120, .height_px = 40, .channels = 3, .bytes = std::vector<std::uint8_t>(120 * 40 * 3, 90)};
+    Picture p{.width_px = 120,
+              .height_px = 40,
+              .channels = 3,
+              .bytes = std::vector<std::uint8_t>(120 * 40 * 3, 90)};
     fill_box(p, -5, 30, 60, 99, 255);
     EXPECT_EQ(p.bytes[(35 * 120 + 10) * 3], 255);
     EXPECT_EQ(p.bytes[(35 * 120 + 70) * 3], 90);
     EXPECT_TRUE(draw_text(p, 5, 20, 14, "10 km")) << "fonts-dejavu-core is not installed";
-    EXPECT_GT(std::count_if(p.bytes.begin(), p.bytes.end(), [](int byte) { return byte > 180; }), 60 * 10 * 3 + 100);
+    EXPECT_GT(std::count_if(p.bytes.begin(), p.bytes.end(), [](int byte) { return byte > 180; }),
+              60 * 10 * 3 + 100);
 }

@@ -27,8 +27,8 @@ Grid<float> bowl(int side, double spacing, double shift_x = 0.0, double shift_y 
     return z;
 }
 
-void write(const std::filesystem::path& path, const Grid<float>& z, double east, double north, double spacing,
-           const std::string& crs = "EPSG:32633") {
+void write(const std::filesystem::path& path, const Grid<float>& z, double east, double north,
+           double spacing, const std::string& crs = "EPSG:32633") {
     const double t[6] = {east, spacing, 0, north, 0, -spacing};
     dem::write_elevations(path, z, crs, t, "test");
 }
@@ -48,7 +48,8 @@ TEST(Import, AMetricTransverseMercatorGridIsKeptNodeForNode) {
     EXPECT_EQ(result.report.resampling, "none");
     ASSERT_EQ(result.ground.size(), z.size);
     for (std::size_t i = 0; i < z.values.size(); ++i) { // within half a code; a shore node one more
-        const double got = result.ground.offset_m + result.ground.scale_m * result.ground.codes.values[i];
+        const double got =
+            result.ground.offset_m + result.ground.scale_m * result.ground.codes.values[i];
         ASSERT_NEAR(got, z.values[i], 1.01 * result.ground.scale_m);
     }
     // Node (0, 0) is the centre of the north-west pixel.
@@ -69,8 +70,10 @@ TEST(Import, TilesInPhaseAreJoinedWithoutResampling) {
         write(folder / ("t" + std::to_string(k) + ".tif"), part, 500'000 + (k % 2) * 500.0,
               5'300'000 - (k / 2) * 500.0, 5.0);
     }
-    const auto tiles = dem::import_dem({.dems = {folder / "t3.tif", folder / "t0.tif", folder / "t2.tif",
-                                                 folder / "t1.tif"}, .level_m = 10.0}, {});
+    const auto tiles = dem::import_dem(
+        {.dems = {folder / "t3.tif", folder / "t0.tif", folder / "t2.tif", folder / "t1.tif"},
+         .level_m = 10.0},
+        {});
     write(folder / "whole.tif", whole, 500'000, 5'300'000, 5.0);
     const auto one = dem::import_dem({.dems = {folder / "whole.tif"}, .level_m = 10.0}, {});
     EXPECT_EQ(tiles.report.resampling, "none");
@@ -88,7 +91,8 @@ TEST(Import, AGeographicGridIsWarpedAndLandsInItsPlace) {
     const geo::Frame local = geo::local_frame(middle);
     for (int r = 0; r < 240; ++r)
         for (int c = 0; c < 240; ++c) {
-            const ScenePoint p = geo::to_scene(local, {46.0 + (119.5 - r) * step, 9.0 + (c - 119.5) * step});
+            const ScenePoint p =
+                geo::to_scene(local, {46.0 + (119.5 - r) * step, 9.0 + (c - 119.5) * step});
             z[{c, r}] = float(0.2 * std::hypot(p.x_m, p.y_m));
         }
     write(folder / "pit.tif", z, 9.0 - 120 * step, 46.0 + 120 * step, step, "EPSG:4326");
@@ -115,7 +119,8 @@ TEST(Import, FeetAndBandScalesBecomeMetres) {
     write(folder / "feet.tif", z, 500'000, 5'300'000, 10.0);
     {
         dem::register_drivers();
-        dem::Dataset ds(GDALDataset::Open((folder / "feet.tif").c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+        dem::Dataset ds(
+            GDALDataset::Open((folder / "feet.tif").c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
         ds->GetRasterBand(1)->SetUnitType("ft");
     }
     const auto result = dem::import_dem({.dems = {folder / "feet.tif"}, .level_m = 10.0}, {});
@@ -127,14 +132,17 @@ TEST(Import, FeetAndBandScalesBecomeMetres) {
 TEST(Import, BoundsAndRadiusCutTheScene) {
     const TempFolder folder;
     write(folder / "bowl.tif", bowl(401, 5.0), 500'000, 5'300'000, 5.0);
-    const geo::Frame utm = dem::import_dem({.dems = {folder / "bowl.tif"}, .level_m = 10.0}, {}).frame;
+    const geo::Frame utm =
+        dem::import_dem({.dems = {folder / "bowl.tif"}, .level_m = 10.0}, {}).frame;
     const GeoPoint middle = geo::to_geo(utm, {0, 0});
-    const auto cut = dem::import_dem({.dems = {folder / "bowl.tif"}, .level_m = 10.0, .at = middle, .radius_km = 0.4}, {});
+    const auto cut = dem::import_dem(
+        {.dems = {folder / "bowl.tif"}, .level_m = 10.0, .at = middle, .radius_km = 0.4}, {});
     EXPECT_NEAR(cut.ground.size().cols * 5.0, 800.0, 20.0);
     EXPECT_NEAR(cut.ground.size().rows * 5.0, 800.0, 20.0);
     EXPECT_NEAR(only(cut).area_m2, M_PI * 250 * 250, 0.01 * M_PI * 250 * 250);
     EXPECT_FALSE(only(cut).open_at_edge);
-    const auto tight = dem::import_dem({.dems = {folder / "bowl.tif"}, .level_m = 10.0, .at = middle, .radius_km = 0.2}, {});
+    const auto tight = dem::import_dem(
+        {.dems = {folder / "bowl.tif"}, .level_m = 10.0, .at = middle, .radius_km = 0.2}, {});
     EXPECT_TRUE(only(tight).open_at_edge);
 }
 
@@ -169,8 +177,10 @@ TEST(Import, BadInputGetsOneClearLine) {
     has({.dems = {bowl_tif}}, "no flat water surface");
     has({.dems = {bowl_tif}, .level_m = 10.0, .at = GeoPoint{0, 0}}, "outside the elevation data");
     has({.dems = {bowl_tif}, .level_m = 10.0, .radius_km = 3.0}, "--radius needs a centre");
-    has({.dems = {bowl_tif}, .level_m = 10.0, .bounds = dem::Bounds{1, 1, 0, 0}}, "--bounds must be");
-    has({.dems = {bowl_tif}, .level_m = 10.0, .bounds = dem::Bounds{-60, -60, -59, -59}}, "lies outside");
+    has({.dems = {bowl_tif}, .level_m = 10.0, .bounds = dem::Bounds{1, 1, 0, 0}},
+        "--bounds must be");
+    has({.dems = {bowl_tif}, .level_m = 10.0, .bounds = dem::Bounds{-60, -60, -59, -59}},
+        "lies outside");
     has({.dems = {bowl_tif}, .level_m = 10.0, .spacing_m = 0.0}, "--spacing");
     has({.dems = {bowl_tif}, .level_m = 10.0, .spacing_m = 0.01}, "nodes, more than 16384");
     has({.dems = {bowl_tif}, .level_m = 10.0, .crs = "EPSG:nonsense"}, "--crs");
@@ -219,11 +229,13 @@ TEST(Samples, TheCalderaMeetsThePublishedFiguresWithinOnePercent) {
     EXPECT_NEAR(island, 1.28e6, 0.15e6);
 }
 
-// --- real data ------------------------------------------------------------------------------------
+// --- real data
+// ------------------------------------------------------------------------------------
 
 TEST(RealData, RotomaHasItsAreaVolumeAndDepth) {
     TARN_NEEDS_DATA("rotoma/rotoma_topobathy_32m.tif");
-    const auto result = dem::import_dem({.dems = {data("rotoma/rotoma_topobathy_32m.tif")}, .level_m = 313.31}, {});
+    const auto result =
+        dem::import_dem({.dems = {data("rotoma/rotoma_topobathy_32m.tif")}, .level_m = 313.31}, {});
     EXPECT_EQ(result.report.resampling, "none");
     EXPECT_NEAR(only(result).area_m2, 11.140e6, 0.001 * 11.140e6);
     EXPECT_NEAR(*only(result).volume_m3, 0.4361e9, 0.001 * 0.4361e9);
@@ -237,9 +249,11 @@ TEST(RealData, PleasantLakeMeetsItsPublishedStageTable) {
     struct Row {
         double level, area, volume;
     };
-    for (const Row row : {Row{299.0544, 552'830.5, 2'737'258.0}, Row{295.5622392, 365'964.3758, 1'138'486.99},
-                          Row{299.9232, 579'137.5712, 3'229'245.23}}) {
-        const auto result = dem::import_dem({.dems = {data("pleasant_wi/pleasant_topobathy.tif")}, .level_m = row.level}, {});
+    for (const Row row :
+         {Row{299.0544, 552'830.5, 2'737'258.0}, Row{295.5622392, 365'964.3758, 1'138'486.99},
+          Row{299.9232, 579'137.5712, 3'229'245.23}}) {
+        const auto result = dem::import_dem(
+            {.dems = {data("pleasant_wi/pleasant_topobathy.tif")}, .level_m = row.level}, {});
         EXPECT_EQ(result.report.resampling, "none");
         EXPECT_NEAR(only(result).area_m2 / row.area, 1.0, 1e-3) << row.level;
         EXPECT_NEAR(*only(result).volume_m3 / row.volume, 1.0, 1e-3) << row.level;
@@ -248,7 +262,8 @@ TEST(RealData, PleasantLakeMeetsItsPublishedStageTable) {
 
 TEST(RealData, CraterLakeFromTwoTilesOutOfPhase) {
     TARN_NEEDS_DATA("crater_lake/ned_n43w123.tif");
-    const std::vector<std::filesystem::path> tiles = {data("crater_lake/ned_n43w124.tif"), data("crater_lake/ned_n43w123.tif")};
+    const std::vector<std::filesystem::path> tiles = {data("crater_lake/ned_n43w124.tif"),
+                                                      data("crater_lake/ned_n43w123.tif")};
     const auto given = dem::import_dem({.dems = tiles, .level_m = 1882.01}, {});
     EXPECT_NEAR(only(given).area_m2, 53.3e6, 0.005 * 53.3e6);
     EXPECT_EQ(only(given).bed, Bed::unknown);
@@ -266,7 +281,11 @@ TEST(RealData, LakesAreFoundAtTheirSeedsWithTheirLevels) {
     };
     // Areas as computed from the files (data/README.md); SRTM shores differ by connection rules.
     const std::vector<Lake> lakes = {
-        {{"sainte_croix/N43E006.hgt", "sainte_croix/N43E007.hgt.zip"}, {43.766, 6.184}, 470, 18.8, 0.02},
+        {{"sainte_croix/N43E006.hgt", "sainte_croix/N43E007.hgt.zip"},
+         {43.766, 6.184},
+         470,
+         18.8,
+         0.02},
         {{"sainte_croix/N43E006.hgt"}, {43.907, 6.532}, 867, 3.26, 0.03},
         {{"fuji_five_lakes/fuji_srtm_90m.tif"}, {35.419, 138.874}, 984, 6.61, 0.02},
         {{"fuji_five_lakes/fuji_srtm_90m.tif"}, {35.513, 138.748}, 829, 5.23, 0.03},
@@ -274,7 +293,11 @@ TEST(RealData, LakesAreFoundAtTheirSeedsWithTheirLevels) {
         {{"fuji_five_lakes/fuji_srtm_90m.tif"}, {35.499, 138.685}, 899, 2.02, 0.03},
         {{"thirlmere/thirlmere_eudem.tif"}, {54.5470, -3.0706}, 179.65, 3.29, 0.01},
         {{"ozarks/ozarks_srtm_30m.tif"}, {38.2068, -92.7595}, 202, 133.5, 0.01},
-        {{"rotoma/rotoma_dem_32m.tif"}, {-38.0454, 176.5858}, 313.30, 10.50, 0.01}, // 10252 nodes at 313.30
+        {{"rotoma/rotoma_dem_32m.tif"},
+         {-38.0454, 176.5858},
+         313.30,
+         10.50,
+         0.01}, // 10252 nodes at 313.30
     };
     for (const Lake& lake : lakes) {
         dem::ImportOptions options{.at = lake.at};
@@ -284,7 +307,8 @@ TEST(RealData, LakesAreFoundAtTheirSeedsWithTheirLevels) {
         }
         const auto result = dem::import_dem(options, {});
         EXPECT_NEAR(only(result).level_m, lake.level, 0.01) << lake.files[0];
-        EXPECT_NEAR(only(result).area_m2 / 1e6 / lake.area_km2, 1.0, lake.tolerance) << lake.files[0] << " " << lake.level;
+        EXPECT_NEAR(only(result).area_m2 / 1e6 / lake.area_km2, 1.0, lake.tolerance)
+            << lake.files[0] << " " << lake.level;
         EXPECT_EQ(only(result).bed, Bed::unknown) << lake.files[0];
     }
 }
@@ -296,7 +320,8 @@ TEST(RealData, AZipWithoutCrsIsRefusedAndTakenWithOne) {
         dem::import_dem(options, {});
         FAIL();
     } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("so2316_dsm_2m.asc: no CRS; give one with --crs"), std::string::npos)
+        EXPECT_NE(std::string(error.what()).find("so2316_dsm_2m.asc: no CRS; give one with --crs"),
+                  std::string::npos)
             << error.what();
     }
     options.crs = "EPSG:27700";

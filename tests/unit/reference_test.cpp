@@ -64,7 +64,8 @@ TEST(Fresnel, IsTheSameForTheReversedRay) {
 TEST(Fresnel, SchlickIsOffByUpToSixPercentNear84Degrees) {
     double worst = 0.0, at = 0.0;
     for (double d = 0.0; d < 90.0; d += 0.1) {
-        const double off = fresnel_schlick(std::cos(deg(d)), into_water) - fresnel_dielectric(std::cos(deg(d)), into_water);
+        const double off = fresnel_schlick(std::cos(deg(d)), into_water) -
+                           fresnel_dielectric(std::cos(deg(d)), into_water);
         if (std::abs(off) > std::abs(worst))
             worst = off, at = d;
     }
@@ -79,8 +80,13 @@ TEST(Refraction, FollowsSnellAndStaysInItsPlane) {
     EXPECT_NEAR(std::hypot(out.x, out.y) * n_water, std::hypot(in.x, in.y), 1e-14);
     EXPECT_NEAR(out.x * in.y, out.y * in.x, 1e-14);
     // Incidence 59.917 degrees -> 40.477 degrees; the sun at 45 degrees -> 32.037 (n = 1.333).
-    EXPECT_NEAR(std::acos(-refracted({std::sin(deg(59.917)), 0, -std::cos(deg(59.917))}, into_water).z) / deg(1), 40.477, 1e-3);
-    EXPECT_NEAR(std::acos(-refracted({std::sin(deg(45)), 0, -std::cos(deg(45))}, into_water).z) / deg(1), 32.037, 1e-3);
+    EXPECT_NEAR(
+        std::acos(-refracted({std::sin(deg(59.917)), 0, -std::cos(deg(59.917))}, into_water).z) /
+            deg(1),
+        40.477, 1e-3);
+    EXPECT_NEAR(std::acos(-refracted({std::sin(deg(45)), 0, -std::cos(deg(45))}, into_water).z) /
+                    deg(1),
+                32.037, 1e-3);
     EXPECT_NEAR(1 - fresnel_dielectric(std::cos(deg(59.917)), into_water), .94065, 1e-5);
 }
 
@@ -92,8 +98,9 @@ TEST(Medium, QuadratureEqualsTheClosedForm) {
             const glm::dvec3 got = path_radiance(bb, c, e, slant, depth, sink, distance);
             for (int k = 0; k < 3; ++k) {
                 const double rate = c[k] * (1 + slant * sink);
-                const double expected = bb[k] / (2 * M_PI) * e[k] * std::exp(-c[k] * slant * depth) *
-                                        (std::abs(rate) < 1e-12 ? distance : -std::expm1(-rate * distance) / rate);
+                const double expected =
+                    bb[k] / (2 * M_PI) * e[k] * std::exp(-c[k] * slant * depth) *
+                    (std::abs(rate) < 1e-12 ? distance : -std::expm1(-rate * distance) / rate);
                 EXPECT_NEAR(got[k] / expected, 1.0, 1e-6);
             }
         }
@@ -136,7 +143,8 @@ TEST(GridWalk, FindsWhatBruteForceFinds) {
         ground.north_m = side - 1;
         Heightfield water = ground;
         std::fill(water.codes.values.begin(), water.codes.values.end(), std::uint16_t(20000));
-        const glm::dvec3 origin(unit(random) * side * 2 - side / 2.0, unit(random) * side * 2 - side / 2.0, 12.0 * unit(random));
+        const glm::dvec3 origin(unit(random) * side * 2 - side / 2.0,
+                                unit(random) * side * 2 - side / 2.0, 12.0 * unit(random));
         double over = 0.0; // path over the field
         const glm::dvec3 aim(unit(random) * side, unit(random) * side, 8.0 * unit(random));
         const glm::dvec3 d = glm::normalize(aim - origin);
@@ -151,7 +159,8 @@ TEST(GridWalk, FindsWhatBruteForceFinds) {
             if (p.z <= std::max(land, lake)) {
                 first = t;
                 wet = lake > land;
-                entered_below = !inside; // through the side of the field, below both: the ground's cut
+                entered_below =
+                    !inside; // through the side of the field, below both: the ground's cut
             }
             inside = true;
             over += 5e-4;
@@ -160,16 +169,21 @@ TEST(GridWalk, FindsWhatBruteForceFinds) {
         if (first < 0.0) {
             // A graze shorter than the step is all that brute force may overlook.
             if (hit && over > 0.01)
-                EXPECT_NEAR(hit->point.z, std::max(ground.elevation_m(hit->point.x, hit->point.y),
-                                                   water.elevation_m(hit->point.x, hit->point.y)), 1e-3);
+                EXPECT_NEAR(hit->point.z,
+                            std::max(ground.elevation_m(hit->point.x, hit->point.y),
+                                     water.elevation_m(hit->point.x, hit->point.y)),
+                            1e-3);
             continue;
         }
         ++hits;
         ASSERT_TRUE(hit.has_value()) << trial;
         EXPECT_LE(hit->t, first + 1e-9) << trial;
         if (first - hit->t > 1e-3) // earlier: then the surface really is there
-            EXPECT_NEAR(hit->point.z, std::max(ground.elevation_m(hit->point.x, hit->point.y),
-                                               water.elevation_m(hit->point.x, hit->point.y)), 1e-6) << trial;
+            EXPECT_NEAR(hit->point.z,
+                        std::max(ground.elevation_m(hit->point.x, hit->point.y),
+                                 water.elevation_m(hit->point.x, hit->point.y)),
+                        1e-6)
+                << trial;
         else if (!entered_below)
             EXPECT_EQ(hit->water, wet) << trial;
     }
@@ -180,7 +194,10 @@ TEST(GridWalk, FindsWhatBruteForceFinds) {
 // in the water E_bed albedo / pi = cos 45 (1 - F) .5 = .3437; from above (1 - F0) / n^2 of it.
 TEST(Tracer, TheTankHasItsExactRadiances) {
     scene::Scene tank = scene::tank();
-    tank.optics = {.name = "lab", .absorption_per_m = {0, 0, 0}, .backscattering_per_m = {0, 0, 0}, .index = 1.333};
+    tank.optics = {.name = "lab",
+                   .absorption_per_m = {0, 0, 0},
+                   .backscattering_per_m = {0, 0, 0},
+                   .index = 1.333};
     scene::View view;
     view.lighting = scene::uniform_sky({1, 0, 1}, glm::dvec3(M_PI), glm::dvec3(0));
     view.settings = {.width_px = 3, .height_px = 3, .samples = 1, .ground_albedo = 0.5};
@@ -200,10 +217,12 @@ TEST(Tracer, TheTankHasItsExactRadiances) {
     const double mirror = fresnel_dielectric(0.5, into_water);
     EXPECT_NEAR(trace(tank, view, {}).radiance[4].g,
                 mirror * 0.2 + (1 - mirror) / (n_water * n_water) * (bed + sky_bed), 1e-6);
-    // From below, straight up: the sky is n^2 brighter, less what is mirrored, plus the mirrored bed.
+    // From below, straight up: the sky is n^2 brighter, less what is mirrored, plus the mirrored
+    // bed.
     view.camera = scene::look({0, 0, -4}, 0, 90, 1.0);
     const double f0 = fresnel_dielectric(1.0, out_of_water);
-    EXPECT_NEAR(trace(tank, view, {}).radiance[4].g, (1 - f0) * n_water * n_water * 0.2 + f0 * (bed + sky_bed), 1e-6);
+    EXPECT_NEAR(trace(tank, view, {}).radiance[4].g,
+                (1 - f0) * n_water * n_water * 0.2 + f0 * (bed + sky_bed), 1e-6);
     // From below at 60 degrees from the vertical: total reflection shows the bed alone.
     view.camera = scene::look({0, 0, -4}, 0, 30, 1.0);
     EXPECT_NEAR(trace(tank, view, {}).radiance[4].g, bed + sky_bed, 1e-6);
@@ -211,13 +230,17 @@ TEST(Tracer, TheTankHasItsExactRadiances) {
 
 TEST(Tracer, AbsorptionFollowsBeerLambertOnTheWayDownAndUp) {
     scene::Scene tank = scene::tank();
-    tank.optics = {.name = "lab", .absorption_per_m = {0.3, 0.1, 0.02}, .backscattering_per_m = {0, 0, 0}, .index = 1.333};
+    tank.optics = {.name = "lab",
+                   .absorption_per_m = {0.3, 0.1, 0.02},
+                   .backscattering_per_m = {0, 0, 0},
+                   .index = 1.333};
     scene::View view;
     view.lighting = scene::uniform_sky({0, 0, 1}, glm::dvec3(M_PI), glm::dvec3(0));
     view.settings = {.width_px = 3, .height_px = 3, .samples = 1, .ground_albedo = 0.5};
     view.camera = scene::look({0, 0, 20}, 0, -90, 1.0);
     const glm::vec3 got = trace(tank, view, {}).radiance[4];
-    const double through = std::pow(1 - fresnel_dielectric(1.0, into_water), 2.0) / (n_water * n_water) * 0.5;
+    const double through =
+        std::pow(1 - fresnel_dielectric(1.0, into_water), 2.0) / (n_water * n_water) * 0.5;
     EXPECT_NEAR(got.r / (through * std::exp(-16 * 0.3)), 1.0, 1e-3);
     EXPECT_NEAR(got.g / (through * std::exp(-16 * 0.1)), 1.0, 1e-3);
     EXPECT_NEAR(got.b / (through * std::exp(-16 * 0.02)), 1.0, 1e-3);

@@ -1,4 +1,5 @@
-// scene.json: round trip, every broken field named; scene folders replaced as a whole or not at all.
+// scene.json: round trip, every broken field named; scene folders replaced as a whole or not at
+// all.
 #include "core/error.hpp"
 #include "dem/write.hpp"
 #include "geo/frame.hpp"
@@ -20,7 +21,8 @@ scene::Scene sample() {
     scene::Scene s = scene::bowl(33);
     s.frame = geo::local_frame({46, 9});
     s.frame.wkt = "EPSG:32632";
-    s.frame.datum_shift = {.side = 2, .reach_m = 100, .east_m = {1, 2, 3, 4}, .north_m = {4, 3, 2, 1}};
+    s.frame.datum_shift = {
+        .side = 2, .reach_m = 100, .east_m = {1, 2, 3, 4}, .north_m = {4, 3, 2, 1}};
     s.lakes[0].name = "Lake \"Ä\"";
     s.lakes[0].volume_m3.reset();
     s.cameras.push_back({"here", scene::look({1, 2, 30}, 10, -20, 50)});
@@ -84,7 +86,8 @@ TEST(SceneJson, EveryBrokenFieldIsNamed) {
         {"\"spacing_m\": 31.25", "\"spacing_m\": 1e999", "JSON"},
         {"\"level_m\": 10.0", "\"level\": 10.0", "lakes[0].level_m is missing"},
         {"\"bed\": \"measured\"", "\"bed\": \"mud\"", "bed is 'mud'"},
-        {"\"file\": \"ground.tif\"", "\"file\": \"../../etc/passwd\"", "ground.file is '../../etc/passwd'"},
+        {"\"file\": \"ground.tif\"", "\"file\": \"../../etc/passwd\"",
+         "ground.file is '../../etc/passwd'"},
         {"\"file\": \"ground.tif\"", "\"file\": \"/etc/passwd\"", "no plain file name"},
         {"\"file\": \"water.tif\"", "\"file\": \"..\"", "no plain file name"},
         {"\"index\": 1.333", "\"index\": null", "optics.index must be a number"},
@@ -116,12 +119,15 @@ TEST(SceneFolder, LoadsWhatWasWrittenAndRefusesDamage) {
         }
     };
     const std::string ground = test_support::read_file(temp / "scene/ground.tif");
-    const auto restore = [&] { std::ofstream(temp / "scene/ground.tif", std::ios::binary) << ground; };
+    const auto restore = [&] {
+        std::ofstream(temp / "scene/ground.tif", std::ios::binary) << ground;
+    };
     fs::remove(temp / "scene/ground.tif");
     EXPECT_NE(says().find("ground.tif: is missing"), std::string::npos) << says();
     std::ofstream(temp / "scene/ground.tif") << "II*";
     EXPECT_NE(says().find("ground.tif"), std::string::npos) << says();
-    std::ofstream(temp / "scene/ground.tif", std::ios::binary) << ground.substr(0, ground.size() / 2);
+    std::ofstream(temp / "scene/ground.tif", std::ios::binary)
+        << ground.substr(0, ground.size() / 2);
     EXPECT_NE(says(), "no error");
     fs::remove(temp / "scene/ground.tif");
     fs::create_symlink("/etc/hostname", temp / "scene/ground.tif");

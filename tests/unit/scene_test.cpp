@@ -31,7 +31,9 @@ TEST(Sky, UniformSkyHasIrradiancePiTimesItsRadiance) {
     const Lighting sky = uniform_sky({0, 0, 1}, glm::dvec3(0), {1, 2, 3});
     EXPECT_NEAR(sky.sky_irradiance.y, 2 * M_PI, 1e-12);
     // The quadrature itself, on a table fine enough for it.
-    SkyTable table{.azimuths = 64, .elevations = 256, .radiance = std::vector<glm::vec3>(64 * 256, glm::vec3(1))};
+    SkyTable table{.azimuths = 64,
+                   .elevations = 256,
+                   .radiance = std::vector<glm::vec3>(64 * 256, glm::vec3(1))};
     EXPECT_NEAR(horizontal_irradiance(table).x, M_PI, 1e-3);
 }
 
@@ -45,12 +47,13 @@ TEST(Sky, ClearSkyConservesEnergyAndIsBlue) {
             EXPECT_GT(direct + light.sky_irradiance[k], 0.35 * above) << degrees;
             EXPECT_GT(light.sky_irradiance[k], 0.01 * above);
         }
-        EXPECT_GT(light.sky_irradiance.b, 1.5 * light.sky_irradiance.r);   // blue sky
-        EXPECT_LT(light.sun_irradiance.b, light.sun_irradiance.r);         // yellow sun
+        EXPECT_GT(light.sky_irradiance.b, 1.5 * light.sky_irradiance.r); // blue sky
+        EXPECT_LT(light.sun_irradiance.b, light.sun_irradiance.r);       // yellow sun
     }
     // Diffuse share at 45 degrees in clear air: 8 to 20 % in broad measurements.
     const Lighting noon = clear_sky(glm::normalize(glm::dvec3(1, 0, 1)));
-    const double share = noon.sky_irradiance.g / (noon.sky_irradiance.g + noon.sun_irradiance.g * std::sqrt(0.5));
+    const double share =
+        noon.sky_irradiance.g / (noon.sky_irradiance.g + noon.sun_irradiance.g * std::sqrt(0.5));
     EXPECT_GT(share, 0.06);
     EXPECT_LT(share, 0.20);
     EXPECT_EQ(clear_sky({1, 0, -0.2}).sun_irradiance.g, 0.0);
@@ -58,13 +61,18 @@ TEST(Sky, ClearSkyConservesEnergyAndIsBlue) {
 
 TEST(Settings, OutOfRangeNamesTheField) {
     RenderSettings{}.validate();
-    for (const RenderSettings wrong : {RenderSettings{.width_px = 0}, RenderSettings{.height_px = 16385},
-                                       RenderSettings{.samples = 0}, RenderSettings{.least_transmittance = 0.9},
-                                       RenderSettings{.ground_albedo = 1.5}})
+    for (const RenderSettings wrong :
+         {RenderSettings{.width_px = 0}, RenderSettings{.height_px = 16385},
+          RenderSettings{.samples = 0}, RenderSettings{.least_transmittance = 0.9},
+          RenderSettings{.ground_albedo = 1.5}})
         EXPECT_THROW(wrong.validate(), Error);
-    EXPECT_DOUBLE_EQ(greatest_path_m({.absorption_per_m = {1, 2, 3}, .backscattering_per_m = {0, 0, 0}},
-                                     {.least_transmittance = std::exp(-3.0)}), 3.0);
-    EXPECT_EQ(greatest_path_m({.absorption_per_m = {0, 0, 0}, .backscattering_per_m = {0, 0, 0}}, {}), 1e9);
+    EXPECT_DOUBLE_EQ(
+        greatest_path_m({.absorption_per_m = {1, 2, 3}, .backscattering_per_m = {0, 0, 0}},
+                        {.least_transmittance = std::exp(-3.0)}),
+        3.0);
+    EXPECT_EQ(
+        greatest_path_m({.absorption_per_m = {0, 0, 0}, .backscattering_per_m = {0, 0, 0}}, {}),
+        1e9);
 }
 
 TEST(Settings, SamplesFillThePixelEvenly) {
