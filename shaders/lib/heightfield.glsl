@@ -21,6 +21,7 @@ struct Field {
     vec2 ground_m;     // x: height of code 0, y: metres per unit texel
     vec2 water_m;      // the same for the water
     float top_m;       // no node is higher
+    float bottom_m;    // of the block of earth, below all nodes
     int root;          // level whose one block covers the field
     int step_limit;    // the walk ends here whatever happens
 };
@@ -28,7 +29,7 @@ struct Field {
 // field_of — the field that a view block describes.
 Field field_of(ViewBlock view) {
     return Field(ivec2(view.grid.xy) - 1, view.grid.xy, 1.0 / view.grid.xy, vec2(0.0, view.heights.y), view.heights.zw,
-                 view.grid.w, int(view.walk.x), int(view.walk.y));
+                 view.grid.w, view.forward.w, int(view.walk.x), int(view.walk.y));
 }
 
 // Origin and direction per metre of path: columns, rows, height. Columns and rows count from the
@@ -115,6 +116,13 @@ bool trace_field(sampler2D heights, sampler2D maxima, Field field, Ray ray, floa
         return false;
     else if (dz > 0.0)
         t_end = min(t_end, (ceiling - oz) / dz);
+    // Nor is there anything below the bottom.
+    if (dz > 0.0)
+        t = max(t, (field.bottom_m - oz) / dz);
+    else if (oz < field.bottom_m)
+        return false;
+    else if (dz < 0.0)
+        t_end = min(t_end, (field.bottom_m - oz) / dz);
     slack = 3e-7 * (abs(oz) + abs(dz) * max(t_end, 0.0)) + 1e-6;
     if (!(t < t_end))
         return false;

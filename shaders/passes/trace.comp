@@ -23,6 +23,8 @@ layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
 layout(binding = TARN_BUFFER_LAKES, std430) readonly buffer Lakes { vec4 lakes[]; };
 
 const float far_m = 1e9;
+// White in an aerial picture is no albedo of 1: pictures are exposed for mid grey.
+const float photo_albedo = 0.7;
 const float inverse_pi = 0.318309886184;
 // Mean slant of skylight in the water, refracted from an even sky, and what the surface lets in
 // of it (1 - .066): docs/physics/water.md.
@@ -76,8 +78,17 @@ vec3 sun_irradiance_below(vec3 below) {
 //
 //   place, base  of the hit: height, and node plus position in the cell
 //   level        of the water above, if in_water
+//   direction    of the ray that came here
 //   path_m       length of the way here, for the footprint of a pixel
-vec3 shade(Field field, Hit hit, vec3 place, ivec2 base, bool in_water, float level, float path_m) {
+vec3 shade(Field field, Hit hit, vec3 place, ivec2 base, vec3 direction, bool in_water, float level,
+           float path_m) {
+    vec4 corners = textureGather(heights, (vec2(hit.cell) + 1.0) * field.texel, 0) * field.ground_m.y;
+    if (!in_water && place.z < bilinear(corners, hit.inside) - view.options.x) {
+        // The side of the block that the scene is cut out of.
+        vec3 earth = view.look.w < 0.0 ? vec3(0.19, 0.155, 0.115) : vec3(view.look.w);
+        float rise = normalize(vec3(-direction.xy, 0.5)).z;
+        return earth * inverse_pi * view.sky_irradiance.rgb * (0.5 + 0.5 * rise);
+    }
     vec2 gradient = ground_gradient(heights, field.nodes, hit.cell, hit.inside, field.ground_m.y);
     vec3 normal = normal_of(gradient, view.grid.z);
     float footprint = view.camera.w * path_m;
@@ -93,7 +104,7 @@ vec3 shade(Field field, Hit hit, vec3 place, ivec2 base, bool in_water, float le
             if (all(greaterThan(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)))) {
                 float lod = max(0.0, log2(max(footprint, 1e-6) / view.ortho_lod.x));
                 vec4 photo = textureLod(ortho, at, lod);
-                albedo = mix(albedo, photo.rgb, photo.a);
+                albedo = mix(albedo, photo_albedo * photo.rgb, photo.a);
             }
         }
     }
@@ -216,7 +227,7 @@ void main() {
             if (!now.in_water)
                 radiance += weight * sky(now.direction);
         } else {
-            radiance += weight * shade(field, hit, place, base, now.in_water, level, before_m + travelled);
+            radiance += weight * shade(field, hit, place, base, now.direction, now.in_water, level, before_m + travelled);
         }
         if (ended) {
             if (!more)

@@ -35,7 +35,7 @@ using ivec4 = glm::ivec4;
 
 struct ViewBlock {
     vec4 camera;          // xyz: position from node walk.zw (grid), w: angle of a pixel [rad]
-    vec4 forward;         // xyz: unit, w: -
+    vec4 forward;         // xyz: unit, w: bottom of the block of earth [m]
     vec4 right;           // xyz: unit, w: tangent of half the horizontal field of view
     vec4 up;              // xyz: unit, w: tangent of half the vertical field of view
     vec4 grid;            // x: columns, y: rows of nodes, z: spacing [m], w: greatest height [m]

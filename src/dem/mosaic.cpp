@@ -316,6 +316,52 @@ double three_digits(double x) {
     return std::floor(x / unit + 1e-9) * unit;
 }
 
+constexpr int cubic_reach = 4; // nodes: two source cells at half their spacing
+
+/// Could a cubic have dipped from above `level_m` to this node's height? By up to .15 of the
+/// highest step within its kernel; real lower ground, below a dam say, lies beside no such step.
+bool dipped(const Grid<float>& z, Node at, float level_m) {
+    float highest = level_m;
+    for (int dr = -cubic_reach; dr <= cubic_reach; ++dr)
+        for (int dc = -cubic_reach; dc <= cubic_reach; ++dc) {
+            const Node n{at.col + dc, at.row + dr};
+            if (z.contains(n) && z[n] > highest)
+                highest = z[n];
+        }
+    return z[at] > level_m - 0.15f * (highest - level_m) - 2.0f;
+}
+
+/// Puts flat surfaces into an interpolated ground, and lifts land beside them that a cubic pulled
+/// below their level to just above it: no puddles along the shore.
+void lay_flats(Grid<float>& z, const Grid<float>& flat) {
+    struct Lift {
+        Node at;
+        float to;
+    };
+    std::vector<Lift> lifts;
+    for (int row = 0; row < z.size.rows; ++row)
+        for (int col = 0; col < z.size.cols; ++col) {
+            const Node at{col, row};
+            const float level = flat[at];
+            if (std::isnan(level))
+                continue;
+            z[at] = level;
+            bool rim = false;
+            for (const Node n :
+                 {Node{col - 1, row}, Node{col + 1, row}, Node{col, row - 1}, Node{col, row + 1}})
+                rim |= z.contains(n) && std::isnan(flat[n]);
+            for (int k = 0; rim && k < (2 * cubic_reach + 1) * (2 * cubic_reach + 1); ++k) {
+                const Node n{col + k % (2 * cubic_reach + 1) - cubic_reach,
+                             row + k / (2 * cubic_reach + 1) - cubic_reach};
+                if (z.contains(n) && std::isnan(flat[n]) && z[n] < level + 0.01f &&
+                    dipped(z, n, level))
+                    lifts.push_back({n, level + 0.01f});
+            }
+        }
+    for (const Lift& lift : lifts)
+        z[lift.at] = std::max(z[lift.at], lift.to);
+}
+
 Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
                      const Progress& progress) {
     Extent all;
@@ -407,7 +453,7 @@ Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
         }
     }
     const bool coarser = spacing > 1.5 * native;
-    const std::string resampling = coarser ? "average" : "bilinear";
+    const std::string resampling = coarser ? "average" : "cubic";
     out.elevation_m = warp(inputs, target, resampling, progress, "warping", 0.05, 0.4);
     out.resampling = text(resampling, " from ", fixed(native, 2), " m to ", fixed(spacing, 2),
                           " m; flat water surfaces by nearest neighbour");
@@ -454,9 +500,7 @@ Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
     if (!flat_inputs.empty()) {
         const Grid<float> level =
             warp(flat_inputs, target, "near", progress, "keeping lakes flat", 0.45, 0.6);
-        for (std::size_t i = 0; i < level.values.size(); ++i)
-            if (!std::isnan(level.values[i]))
-                out.elevation_m.values[i] = level.values[i];
+        lay_flats(out.elevation_m, level);
     }
     return out;
 }

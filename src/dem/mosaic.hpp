@@ -4,7 +4,7 @@
 /// A grid that already is metric and square in a transverse Mercator projection is kept, cell for
 /// node, nothing resampled. Everything else is warped by GDAL to a local transverse Mercator.
 /// Flat surfaces (water) are carried over by nearest neighbour, so that a lake keeps its level
-/// and its area; land is interpolated bilinearly, which cannot overshoot into the water.
+/// and its area; land is interpolated by cubics, held above the water beside it.
 #include "core/grid.hpp"
 #include "core/progress.hpp"
 #include "dem/source.hpp"

@@ -47,7 +47,8 @@ std::optional<double> first_below(Gap gap, double a, double b) {
 } // namespace
 
 std::optional<Hit> trace_field(const Heightfield& ground, const Heightfield* water,
-                               glm::dvec3 origin, glm::dvec3 direction, double t_max) {
+                               glm::dvec3 origin, glm::dvec3 direction, double t_max,
+                               double bottom_m) {
     const GridSize size = ground.size();
     const double s = ground.spacing_m;
     const double oc = ground.col(origin.x), orow = ground.row(origin.y);
@@ -66,6 +67,13 @@ std::optional<Hit> trace_field(const Heightfield& ground, const Heightfield* wat
         t0 = std::max(t0, std::min(a, b));
         t1 = std::min(t1, std::max(a, b));
     };
+    // The slab from the block's bottom up.
+    if (direction.z > 0.0)
+        t0 = std::max(t0, (bottom_m - origin.z) / direction.z);
+    else if (direction.z < 0.0)
+        t1 = std::min(t1, (bottom_m - origin.z) / direction.z);
+    else if (origin.z < bottom_m)
+        return {};
     clip(oc, dc, size.cols - 1);
     clip(orow, dr, size.rows - 1);
     if (!(t0 < t1))

@@ -22,7 +22,9 @@ struct Hit {
 /// hold some.
 /// @param direction  unit, scene axes
 /// @param water      null to look at the ground only
+/// @param bottom_m   of the block of earth below the ground: there is nothing under it
 std::optional<Hit> trace_field(const Heightfield& ground, const Heightfield* water,
-                               glm::dvec3 origin, glm::dvec3 direction, double t_max);
+                               glm::dvec3 origin, glm::dvec3 direction, double t_max,
+                               double bottom_m = -1e9);
 
 } // namespace tarn::reference

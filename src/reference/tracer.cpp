@@ -36,7 +36,8 @@ public:
         : scene_(scene), light_(view.lighting), settings_(view.settings), camera_(view.camera),
           index_(scene.optics.index), attenuation_(scene.optics.attenuation_per_m()),
           longest_path_m_(scene::greatest_path_m(scene.optics, view.settings)),
-          lift_m_(scene::shadow_lift_m(scene.ground)) {
+          lift_m_(scene::shadow_lift_m(scene.ground)),
+          bottom_m_(scene::block_bottom_m(scene.ground)) {
         half_tangent_.y = std::tan(camera_.fov_deg * pi / 360.0);
         half_tangent_.x = half_tangent_.y * settings_.width_px / settings_.height_px;
         pixel_rad_ = 2.0 * half_tangent_.y / settings_.height_px;
@@ -82,7 +83,7 @@ private:
     }
 
     bool blocked(glm::dvec3 from, glm::dvec3 towards, double reach) const {
-        return trace_field(scene_.ground, nullptr, from, towards, reach).has_value();
+        return trace_field(scene_.ground, nullptr, from, towards, reach, bottom_m_).has_value();
     }
 
     glm::dvec3 normal_at(const Hit& hit, double& slope) const {
@@ -114,14 +115,27 @@ private:
                              scene_.look.snow_line_m - level_m, slope, footprint);
     }
 
-    glm::dvec3 land(const Hit& hit, double footprint) const {
+    /// The side of the block that the scene is cut out of: a hit below the surface.
+    bool is_cut(const Hit& hit) const {
+        return hit.point.z < scene_.ground.elevation_m(hit.point.x, hit.point.y) - lift_m_;
+    }
+
+    glm::dvec3 land(const Hit& hit, glm::dvec3 direction, double footprint) const {
+        if (is_cut(hit)) {
+            const glm::dvec3 facing_us =
+                glm::normalize(glm::dvec3(-direction.x, -direction.y, 0.5));
+            const glm::dvec3 earth = settings_.ground_albedo ? glm::dvec3(*settings_.ground_albedo)
+                                                             : glm::dvec3(0.19, 0.155, 0.115);
+            return earth / pi * light_.sky_irradiance * (1.0 + facing_us.z) / 2.0;
+        }
         double slope = 0.0;
         const glm::dvec3 normal = normal_at(hit, slope);
         const double level = scene_.lakes.front().level_m;
         glm::dvec3 colour = albedo(hit, false, level, slope, footprint);
         if (!settings_.ground_albedo && !photo_.empty()) {
             const glm::dvec4 photo = photo_.at(hit.point.x, hit.point.y, footprint);
-            colour = colour * (1.0 - photo.a) + glm::dvec3(photo) * photo.a;
+            colour =
+                colour * (1.0 - photo.a) + 0.7 * glm::dvec3(photo) * photo.a; // as in trace.comp
         }
         glm::dvec3 irradiance = light_.sky_irradiance * (1.0 + normal.z) / 2.0;
         const double facing = glm::dot(normal, light_.sun_direction);
@@ -169,7 +183,7 @@ private:
         if (!hit)
             return sky(direction);
         if (!hit->water)
-            return land(*hit, pixel_rad_ * (before_m + hit->t));
+            return land(*hit, direction, pixel_rad_ * (before_m + hit->t));
         const Lake lake{hit->point.z, scene_.lake_at_level(hit->point.z).bed != Bed::unknown};
         const double mirror = reflectance(std::min(-direction.z, 1.0), 1.0 / index_);
         glm::dvec3 out(0.0);
@@ -191,7 +205,7 @@ private:
         const double reach = std::min(to_surface, longest_path_m_);
         std::optional<Hit> hit;
         if (lake.bed_known)
-            hit = trace_field(scene_.ground, nullptr, origin, direction, reach);
+            hit = trace_field(scene_.ground, nullptr, origin, direction, reach, bottom_m_);
         const double length = hit ? hit->t : reach;
         const bool at_surface = !hit && to_surface <= longest_path_m_;
         if (distance)
@@ -228,7 +242,7 @@ private:
     const scene::Camera& camera_;
     double index_;
     glm::dvec3 attenuation_;
-    double longest_path_m_, lift_m_;
+    double longest_path_m_, lift_m_, bottom_m_;
     glm::dvec2 half_tangent_{0.0};
     double pixel_rad_ = 0.0;
     glm::dvec3 sun_below_{0, 0, 1}, sun_irradiance_below_{0.0};

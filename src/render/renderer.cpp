@@ -59,6 +59,7 @@ void Renderer::upload_scene() {
     block_.grid = {float(size.cols), float(size.rows), float(ground.spacing_m),
                    float(top - ground.offset_m)};
     block_.counts.w = static_cast<std::uint32_t>(lakes.size());
+    block_.forward.w = float(scene::block_bottom_m(ground) - ground.offset_m);
 
     if (scene_.ortho) {
         const Ortho& o = *scene_.ortho;
@@ -133,7 +134,7 @@ void Renderer::prepare(const scene::View& view) {
     block_.walk.w = int(std::floor(row));
     block_.camera = {float(col - std::floor(col)), float(row - std::floor(row)),
                      float(p.z - ground.offset_m), float(pixel_rad)};
-    block_.forward = glm::vec4(glm::vec3(camera.forward), 0.0f);
+    block_.forward = glm::vec4(glm::vec3(camera.forward), block_.forward.w);
     block_.right =
         glm::vec4(glm::vec3(camera.right), float(half * settings.width_px / settings.height_px));
     block_.up = glm::vec4(glm::vec3(camera.up), float(half));

@@ -38,6 +38,11 @@ double shadow_lift_m(const Heightfield& ground) {
     return 0.01 * ground.spacing_m + 2.0 * ground.scale_m;
 }
 
+double block_bottom_m(const Heightfield& ground) {
+    const double side = std::max(ground.size().cols, ground.size().rows) * ground.spacing_m;
+    return ground.min_elevation_m() - side / 30.0;
+}
+
 double greatest_path_m(const WaterOptics& optics, const RenderSettings& settings) {
     const glm::dvec3 c = optics.attenuation_per_m();
     const double least = std::min({c.x, c.y, c.z});

@@ -41,6 +41,10 @@ glm::dvec2 sample_offset(int index, int count);
 /// spacing and two height quanta, or the surface would shade itself by rounding.
 double shadow_lift_m(const Heightfield& ground);
 
+/// Bottom of the block of earth that a scene is cut out of [m]: a thirtieth of its longer side
+/// below its lowest node. Rays that come in from the side meet the cut; below it there is sky.
+double block_bottom_m(const Heightfield& ground);
+
 /// Length of an underwater path after which less than settings.least_transmittance is left in
 /// every channel [m]; 1e9 in water that does not attenuate.
 double greatest_path_m(const WaterOptics& optics, const RenderSettings& settings);

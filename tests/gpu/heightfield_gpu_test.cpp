@@ -51,12 +51,12 @@ struct Verdict {
 Verdict judge(const scene::Scene& scene, std::vector<TestRay> rays, bool with_water) {
     const auto got = test_support::trace_on_gpu(scene, rays, with_water);
     Verdict v;
-    const double quantum = scene.ground.scale_m;
+    const double quantum = scene.ground.scale_m, bottom = scene::block_bottom_m(scene.ground);
     for (std::size_t i = 0; i < rays.size(); ++i) {
         ++v.rays;
         const double length = glm::length(rays[i].direction);
         const auto hit = reference::trace_field(scene.ground, with_water ? &scene.water : nullptr,
-                                                rays[i].origin, rays[i].direction, 1e9);
+                                                rays[i].origin, rays[i].direction, 1e9, bottom);
         v.hits += hit.has_value();
         // A miss or hit by less than a quantum is no mistake: lower and raise the ray by one; nor
         // is one by a ten-thousandth of a cell sideways, at the field's rim and at needles.
