@@ -27,9 +27,11 @@ list(APPEND pages ${ROOT}/README.md ${ROOT}/CHANGELOG.md ${ROOT}/data_samples/RE
 foreach(page IN LISTS pages)
     file(READ ${page} text)
     get_filename_component(folder ${page} DIRECTORY)
-    string(REGEX MATCHALL "\\]\\([^)#: ]+" links "${text}")
+    string(REPLACE "](" "LINK<" text "${text}") # brackets upset CMake's lists
+    string(REGEX REPLACE "[][;]" "" text "${text}")
+    string(REGEX MATCHALL "LINK<[^)#: ]+" links "${text}")
     foreach(link IN LISTS links)
-        string(SUBSTRING "${link}" 2 -1 target)
+        string(SUBSTRING "${link}" 5 -1 target)
         if(NOT EXISTS ${folder}/${target})
             string(APPEND bad "  ${page} links to ${target}, which is not there\n")
         endif()
