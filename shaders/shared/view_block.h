@@ -24,6 +24,7 @@ using ivec4 = glm::ivec4;
 #define TARN_IMAGE_RADIANCE 0  // rgba32f
 #define TARN_IMAGE_DISTANCE 1  // r32f
 #define TARN_IMAGE_MAXIMA 2    // rg32f, written level of the maxima
+#define TARN_IMAGE_HITS 3      // 3, 4, 5: rgba32ui, one image for each part of a path (lib/parts.glsl)
 
 #define TARN_FLAG_SHADOWS 1u
 #define TARN_FLAG_REFLECTION 2u
@@ -55,9 +56,10 @@ struct ViewBlock {
     vec4 offset;          // xy: position inside the pixel, z: index of the sample, w: -
     uvec4 counts;         // x: width, y: height [px], z: flags, w: lakes
     ivec4 walk;           // x: level of the root block, y: limit of steps, zw: node by the camera
+    ivec4 tile;           // xy: first pixel, zw: size of the tile being drawn
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewBlock) == 288 && offsetof(ViewBlock, walk) == 272, "std140 layout");
+static_assert(sizeof(ViewBlock) == 304 && offsetof(ViewBlock, tile) == 288, "std140 layout");
 } // namespace tarn::shared
 #endif

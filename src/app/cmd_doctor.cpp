@@ -37,7 +37,8 @@ Findings examine() {
                        {"version", context.version()},
                        {"max_texture_side_px", context.max_texture_side_px()}};
         for (const char* pass :
-             {"passes/block_maxima.comp", "passes/reduce_maxima.comp", "passes/trace.comp"})
+             {"passes/block_maxima.comp", "passes/reduce_maxima.comp", "passes/primary.comp",
+              "passes/secondary.comp", "passes/shadow.comp", "passes/shade.comp"})
             gpu::ComputeProgram(gpu::load_shader(gpu::shader_root(), pass));
         j["can_render"] = out.can_render = true;
     } catch (const Error& error) {

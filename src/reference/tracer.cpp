@@ -5,8 +5,10 @@
 #include "reference/ground_colour.hpp"
 #include "reference/heightfield.hpp"
 #include "reference/medium.hpp"
+#include "reference/parts.hpp"
 #include "reference/photo.hpp"
 #include "reference/sky.hpp"
+#include "reference/sunlight.hpp"
 #include "reference/surface.hpp"
 
 #include <cmath>
@@ -42,13 +44,10 @@ public:
         half_tangent_.x = half_tangent_.y * settings_.width_px / settings_.height_px;
         pixel_rad_ = 2.0 * half_tangent_.y / settings_.height_px;
         const glm::dvec3 sun = light_.sun_direction;
-        if (sun.z > 0.0) {
-            // Seen against the light: the sunbeam goes down along -sun.
-            sun_below_ = -refracted(-sun, 1.0 / index_);
-            // Flux through a horizontal metre is the same on both sides, but for what is mirrored.
-            const double entering = 1.0 - reflectance(sun.z, 1.0 / index_);
-            sun_irradiance_below_ = light_.sun_irradiance * (entering * sun.z / sun_below_.z);
-        }
+        sun_below_ = sun_below(sun, index_);
+        sun_irradiance_below_ =
+            light_.sun_irradiance *
+            sun_share_below(sun, sun_below_, index_, settings_.fresnel == scene::Fresnel::schlick);
         if (scene.ortho)
             photo_ = Photo(*scene.ortho);
         const glm::dvec3& p = camera_.position;
@@ -67,9 +66,9 @@ public:
     }
 
 private:
-    double reflectance(double cosine, double eta) const {
-        return settings_.fresnel == scene::Fresnel::schlick ? fresnel_schlick(cosine, eta)
-                                                            : fresnel_dielectric(cosine, eta);
+    Split split(glm::dvec3 direction, bool from_water) const {
+        return split_at_surface(direction, index_, from_water,
+                                settings_.fresnel == scene::Fresnel::schlick);
     }
 
     glm::dvec3 sky(glm::dvec3 direction) const {
@@ -135,7 +134,7 @@ private:
         if (!settings_.ground_albedo && !photo_.empty()) {
             const glm::dvec4 photo = photo_.at(hit.point.x, hit.point.y, footprint);
             colour =
-                colour * (1.0 - photo.a) + 0.7 * glm::dvec3(photo) * photo.a; // as in trace.comp
+                colour * (1.0 - photo.a) + 0.7 * glm::dvec3(photo) * photo.a; // as in shade.comp
         }
         glm::dvec3 irradiance = light_.sky_irradiance * (1.0 + normal.z) / 2.0;
         const double facing = glm::dot(normal, light_.sun_direction);
@@ -185,15 +184,13 @@ private:
         if (!hit->water)
             return land(*hit, direction, pixel_rad_ * (before_m + hit->t));
         const Lake lake{hit->point.z, scene_.lake_at_level(hit->point.z).bed != Bed::unknown};
-        const double mirror = reflectance(std::min(-direction.z, 1.0), 1.0 / index_);
+        const Split at = split(direction, false);
         glm::dvec3 out(0.0);
         if (settings_.reflection)
-            out += mirror * in_air(hit->point, {direction.x, direction.y, -direction.z},
-                                   before_m + hit->t, false, nullptr);
+            out += at.mirror * in_air(hit->point, at.reflected, before_m + hit->t, false, nullptr);
         if (settings_.refraction)
-            out += (1.0 - mirror) / (index_ * index_) *
-                   in_water(hit->point, refracted(direction, 1.0 / index_), lake, before_m + hit->t,
-                            false, nullptr);
+            out += at.through *
+                   in_water(hit->point, at.refracted, lake, before_m + hit->t, false, nullptr);
         return out;
     }
 
@@ -225,14 +222,12 @@ private:
             return out;
         glm::dvec3 top = origin + length * direction;
         top.z = lake.level_m;
-        const double mirror = reflectance(std::min(direction.z, 1.0), index_);
+        const Split at = split(direction, true);
         if (settings_.reflection)
-            out += left * mirror *
-                   in_water(top, {direction.x, direction.y, -direction.z}, lake, before_m + length,
-                            false, nullptr);
-        if (settings_.refraction && mirror < 1.0)
-            out += left * (1.0 - mirror) * index_ * index_ *
-                   in_air(top, refracted(direction, index_), before_m + length, false, nullptr);
+            out += left * at.mirror *
+                   in_water(top, at.reflected, lake, before_m + length, false, nullptr);
+        if (settings_.refraction && at.mirror < 1.0)
+            out += left * at.through * in_air(top, at.refracted, before_m + length, false, nullptr);
         return out;
     }
 

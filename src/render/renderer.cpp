@@ -13,6 +13,9 @@ namespace {
 
 GLuint groups(int items) { return static_cast<GLuint>((items + 7) / 8); }
 
+/// Pixels of a tile at most: what the passes hand to each other takes 48 bytes a pixel.
+constexpr int tile_pixels = 1 << 22;
+
 int next_power_of_two(int n) {
     int p = 1;
     while (p < n)
@@ -27,7 +30,10 @@ Renderer::Renderer(const scene::Scene& scene)
     const auto root = gpu::shader_root();
     block_maxima_ = gpu::ComputeProgram(gpu::load_shader(root, "passes/block_maxima.comp"));
     reduce_maxima_ = gpu::ComputeProgram(gpu::load_shader(root, "passes/reduce_maxima.comp"));
-    trace_ = gpu::ComputeProgram(gpu::load_shader(root, "passes/trace.comp"));
+    primary_ = gpu::ComputeProgram(gpu::load_shader(root, "passes/primary.comp"));
+    secondary_ = gpu::ComputeProgram(gpu::load_shader(root, "passes/secondary.comp"));
+    shadow_ = gpu::ComputeProgram(gpu::load_shader(root, "passes/shadow.comp"));
+    shade_ = gpu::ComputeProgram(gpu::load_shader(root, "passes/shade.comp"));
     upload_scene();
     build_maxima();
 }
@@ -179,39 +185,74 @@ void Renderer::prepare(const scene::View& view) {
         distance_ = gpu::Texture2D(GL_R32F, settings.width_px, settings.height_px, 1,
                                    gpu::Filter::nearest, "distances");
     }
-    trace_.use();
+    // As wide as the picture, as high as the limit allows.
+    const int tile_rows =
+        std::min(settings.height_px, std::max(8, tile_pixels / settings.width_px));
+    if (hits_[0].width_px() != settings.width_px || hits_[0].height_px() != tile_rows)
+        for (gpu::Texture2D& hits : hits_)
+            hits = gpu::Texture2D(GL_RGBA32UI, settings.width_px, tile_rows, 1,
+                                  gpu::Filter::nearest, "hits");
+    for (GLuint k = 0; k < 3; ++k)
+        hits_[k].bind_image(TARN_IMAGE_HITS + k, GL_READ_WRITE);
     bind_field();
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_LAKES, lakes_.id());
     sky_.bind(TARN_TEXTURE_SKY);
     ortho_.bind(TARN_TEXTURE_ORTHO);
     radiance_.bind_image(TARN_IMAGE_RADIANCE, GL_READ_WRITE);
     distance_.bind_image(TARN_IMAGE_DISTANCE, GL_WRITE_ONLY);
-    write_block(0, 1);
+    set_sample(0, 1);
     gpu::check_gl("preparing the picture");
 }
 
-void Renderer::write_block(int sample, int samples) {
+void Renderer::set_sample(int sample, int samples) {
     const glm::dvec2 offset = scene::sample_offset(sample, samples);
     block_.offset = {float(offset.x), float(offset.y), float(sample), 0.0f};
     block_.options.w = 1.0f / float(samples);
+}
+
+void Renderer::draw_tile() {
     view_buffer_.write(&block_, sizeof block_);
+    const GLuint across = groups(block_.tile.z), down = groups(block_.tile.w);
+    constexpr GLbitfield images = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
+    const bool split = (block_.counts.z & (TARN_FLAG_REFLECTION | TARN_FLAG_REFRACTION)) != 0;
+    glMemoryBarrier(images);
+    primary_.use();
+    glDispatchCompute(across, down, 1);
+    glMemoryBarrier(images);
+    if (split) {
+        secondary_.use();
+        glDispatchCompute(across, down, 2);
+        glMemoryBarrier(images);
+    }
+    if ((block_.counts.z & TARN_FLAG_SHADOWS) != 0 && block_.sun.z > 0.0f) {
+        shadow_.use();
+        glDispatchCompute(across, down, split ? 3 : 1);
+        glMemoryBarrier(images);
+    }
+    shade_.use();
+    glDispatchCompute(across, down, 1);
 }
 
 void Renderer::draw_once() {
-    glDispatchCompute(groups(int(block_.counts.x)), groups(int(block_.counts.y)), 1);
+    const int width = int(block_.counts.x), height = int(block_.counts.y),
+              rows = hits_[0].height_px();
+    for (int top = 0; top < height; top += rows) {
+        block_.tile = {0, top, width, std::min(rows, height - top)};
+        draw_tile();
+    }
 }
 
 Image Renderer::draw(const scene::View& view, const std::function<void(double)>& progress) {
     prepare(view);
     for (int sample = 0; sample < samples_; ++sample) {
-        write_block(sample, samples_);
+        set_sample(sample, samples_);
         draw_once();
-        glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
         if (progress) {
             glFinish();
             progress(double(sample + 1) / samples_);
         }
     }
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     Image image;
     image.width_px = radiance_.width_px();
     image.height_px = radiance_.height_px();

@@ -23,7 +23,7 @@ public:
     /// @param progress  called after each sample with its share; may throw to stop
     Image draw(const scene::View& view, const std::function<void(double)>& progress = {});
 
-    /// Draws one sample and leaves it on the GPU; for timing. Call prepare() first.
+    /// Draws one sample, tile by tile, and leaves it on the GPU. Call prepare() first.
     void draw_once();
 
     /// Uploads camera, light and settings, and makes the target images.
@@ -35,14 +35,17 @@ public:
 private:
     void upload_scene();
     void build_maxima();
-    void write_block(int sample, int samples);
+    void set_sample(int sample, int samples);
+    void draw_tile();
 
     const scene::Scene& scene_;
     shared::ViewBlock block_{};
     int root_level_ = 1;
     gpu::Texture2D heights_, maxima_, sky_, ortho_, radiance_, distance_;
+    gpu::Texture2D
+        hits_[3]; ///< ends of the parts of the paths of one tile (shaders/lib/parts.glsl)
     gpu::Buffer view_buffer_, lakes_;
-    gpu::ComputeProgram block_maxima_, reduce_maxima_, trace_;
+    gpu::ComputeProgram block_maxima_, reduce_maxima_, primary_, secondary_, shadow_, shade_;
     int samples_ = 1;
 };
 

@@ -1,0 +1,115 @@
+// lib/parts.glsl — the up to three parts of a pixel's path, and how a part's end is stored between passes.
+// Pure functions. C++ twin of the split: src/reference/parts.hpp
+//
+// Part 0 runs from the camera to the first surface. If that is water, part 1 is the mirrored and part 2
+// the refracted ray. Ends are found by lean passes that only walk (few registers, so that many rays are
+// in flight) and coloured by another that does not walk at all.
+#include "shared/view_block.h"
+#include "lib/camera.glsl"
+#include "lib/fresnel.glsl"
+#include "lib/heightfield.glsl"
+
+const float far_m = 1e9;
+
+// What a part ended at; bits of End.flags.
+const uint end_ground = 1u;    // land or bed
+const uint end_surface = 2u;   // the water's surface: parts 1 and 2 go on from here
+const uint end_lit = 4u;       // the sun reaches that ground
+const uint end_bed_known = 8u; // the lake met, or dived in, has a bed
+
+struct End {
+    float t;      // path length [m]; where nothing was met, the reach of the part
+    ivec2 cell;   // node and ...
+    vec2 inside;  // ... place in its cell, to a 65535th
+    uint flags;
+};
+
+uvec4 pack_end(End end) {
+    return uvec4(floatBitsToUint(end.t), uint(end.cell.x) | uint(end.cell.y) << 16, packUnorm2x16(end.inside),
+                 end.flags);
+}
+
+End unpack_end(uvec4 packed_end) {
+    return End(uintBitsToFloat(packed_end.x), ivec2(packed_end.y & 0xffffu, packed_end.y >> 16),
+               unpackUnorm2x16(packed_end.z), packed_end.w);
+}
+
+struct Split {
+    vec3 reflected, refracted; // unit; refracted is reflected beyond the critical angle
+    float mirror, through;     // factors on radiance that comes from there
+};
+
+// split_at_surface — where a view ray goes on at flat water, and what each branch counts.
+//
+//   direction   unit, of the view ray
+//   index       of refraction of the water
+//   from_water  the ray comes from below
+//   schlick     approximate reflectance
+// Source  Snell and Fresnel; what is conserved along a ray is radiance over index squared.
+Split split_at_surface(vec3 direction, float index, bool from_water, bool schlick) {
+    float eta = from_water ? index : 1.0 / index;
+    float cosine = min(abs(direction.z), 1.0);
+    float mirror = schlick ? fresnel_schlick(cosine, eta) : fresnel_dielectric(cosine, eta);
+    vec3 reflected = vec3(direction.xy, -direction.z);
+    return Split(reflected, mirror < 1.0 ? refracted(direction, eta) : reflected, mirror,
+                 (1.0 - mirror) * eta * eta);
+}
+
+struct Part {
+    ivec2 base;     // node that origin.xy counts from
+    vec3 origin;    // columns, rows, height
+    vec3 direction; // unit, scene axes
+    float weight;   // factor of the split
+    bool in_water;
+    float level;    // of that water, or of the water that the path was split at
+    bool bed_known; // in that lake
+};
+
+Part camera_part(ViewBlock view, ivec2 pixel) {
+    vec2 place = (vec2(pixel) + view.offset.xy) / vec2(view.counts.xy);
+    vec3 direction =
+        pixel_direction(view.forward.xyz, view.right.xyz, view.up.xyz, vec2(view.right.w, view.up.w), place);
+    return Part(view.walk.zw, view.camera.xyz, direction, 1.0, (view.counts.z & TARN_FLAG_UNDER_WATER) != 0u,
+                view.options.y, view.options.z > 0.5);
+}
+
+// split_part — part 1 or 2 from where part 0 met the surface.
+Part split_part(ViewBlock view, Part first, End end, int number) {
+    float level = first.in_water ? first.level : first.origin.z + end.t * first.direction.z;
+    Split split = split_at_surface(first.direction, view.attenuation.w, first.in_water,
+                                   (view.counts.z & TARN_FLAG_SCHLICK) != 0u);
+    bool mirrored = number == 1;
+    return Part(end.cell, vec3(end.inside, level), mirrored ? split.reflected : split.refracted,
+                mirrored ? split.mirror : split.through, mirrored == first.in_water, level,
+                (end.flags & end_bed_known) != 0u);
+}
+
+// wanted — whether a part of that number is drawn at all.
+bool wanted(ViewBlock view, Part part, int number) {
+    uint flag = number == 1 ? TARN_FLAG_REFLECTION : TARN_FLAG_REFRACTION;
+    return (view.counts.z & flag) != 0u && part.weight > 0.0;
+}
+
+float depth_of(Part part) { return part.in_water ? max(part.level - part.origin.z, 0.0) : 0.0; }
+
+// to_surface — path to the water's surface from below; far if the part does not rise to it.
+float to_surface(Part part) {
+    return part.in_water && part.direction.z > 1e-6 ? depth_of(part) / part.direction.z : far_m;
+}
+
+// reach — path after which the part ends whatever it met.
+float reach(ViewBlock view, Part part) {
+    return part.in_water ? min(to_surface(part), view.backscattering.w) : far_m;
+}
+
+Ray ray_of(ViewBlock view, Part part) {
+    return ray_from(part.base, part.origin, part.direction, view.grid.z);
+}
+
+// place_at — node and place in its cell that the part has come to after t metres.
+void place_at(ViewBlock view, Part part, float t, out ivec2 cell, out vec2 inside) {
+    vec2 at = part.origin.xy + t * vec2(part.direction.x, -part.direction.y) / view.grid.z;
+    vec2 whole = floor(at);
+    cell = clamp(part.base + ivec2(whole), ivec2(0), ivec2(view.grid.xy) - 2);
+    inside = clamp(at - vec2(cell - part.base), 0.0, 1.0);
+}

@@ -1,0 +1,50 @@
+#version 450 core
+// passes/primary.comp — part 0 of every path: from the camera to the first surface.
+// Reads heights and maxima; writes hits 0 and, for the first sample, distances. One invocation a pixel
+// of the tile. Only walks: see lib/parts.glsl.
+#include "lib/parts.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
+layout(binding = TARN_TEXTURE_MAXIMA) uniform sampler2D maxima;
+layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
+layout(binding = TARN_BUFFER_LAKES, std430) readonly buffer Lakes { vec4 lakes[]; };
+layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform writeonly uimage2D hits;
+layout(binding = TARN_IMAGE_DISTANCE, r32f) uniform writeonly image2D distance_image;
+
+// Whether the bed of the lake with that level is known.
+bool bed_is_known(float level) {
+    float nearest = far_m;
+    bool known = true;
+    for (uint k = 0u; k < view.counts.w; ++k)
+        if (abs(lakes[k].x - level) < nearest) {
+            nearest = abs(lakes[k].x - level);
+            known = lakes[k].y > 0.5;
+        }
+    return known;
+}
+
+void main() {
+    ivec2 local = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(local, view.tile.zw)))
+        return;
+    ivec2 pixel = local + view.tile.xy;
+    Part part = camera_part(view, pixel);
+    float limit = reach(view, part);
+    Hit hit;
+    bool found = false;
+    if (!part.in_water || part.bed_known)
+        found = trace_field(heights, maxima, field_of(view), ray_of(view, part), limit, !part.in_water, hit);
+    End end = End(limit, ivec2(0), vec2(0.0), 0u);
+    if (found) {
+        end = End(hit.t, hit.cell, hit.inside, hit.water ? end_surface : end_ground);
+        if (hit.water && bed_is_known(part.origin.z + hit.t * part.direction.z))
+            end.flags |= end_bed_known;
+    } else if (part.in_water && to_surface(part) <= view.backscattering.w) {
+        end.flags = end_surface | (part.bed_known ? end_bed_known : 0u);
+        place_at(view, part, limit, end.cell, end.inside);
+    }
+    imageStore(hits, local, pack_end(end));
+    if (view.offset.z < 0.5)
+        imageStore(distance_image, pixel, vec4(end.flags != 0u ? end.t : far_m));
+}

@@ -1,0 +1,133 @@
+#version 450 core
+// passes/shade.comp — the picture: what light each part of a path brings to the camera.
+// Reads hits, heights (for normals), sky and orthophoto; adds to radiance. One invocation a pixel of the
+// tile. Walks nowhere.
+#include "lib/ground_colour.glsl"
+#include "lib/medium.glsl"
+#include "lib/parts.glsl"
+#include "lib/sky.glsl"
+#include "lib/sunlight.glsl"
+#include "lib/surface.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
+layout(binding = TARN_TEXTURE_SKY) uniform sampler2D sky_table;
+layout(binding = TARN_TEXTURE_ORTHO) uniform sampler2D ortho;
+layout(binding = TARN_IMAGE_RADIANCE, rgba32f) uniform image2D radiance_image;
+layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform readonly uimage2D hits[3];
+layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
+
+const float inverse_pi = 0.318309886184;
+// Mean slant of skylight in the water, refracted from an even sky, and what the surface lets in of it
+// (1 - .066): docs/physics/water.md.
+const float sky_slant = 1.19;
+const float sky_entering = 0.934;
+// White in an aerial picture is no albedo of 1: pictures are exposed for mid grey.
+const float photo_albedo = 0.7;
+
+bool on(uint flag) { return (view.counts.z & flag) != 0u; }
+
+vec3 sky(vec3 direction) {
+    vec3 radiance = sky_radiance(sky_table, direction, view.sun.xyz);
+    if (on(TARN_FLAG_SUN_DISC)) {
+        float radius = view.sun.w;
+        radiance += view.sun_irradiance.rgb / (3.14159265359 * radius * radius) *
+                    disc_share(direction, view.sun.xyz, radius, view.camera.w);
+    }
+    return radiance;
+}
+
+vec3 sun_irradiance_below(vec3 below) {
+    return view.sun_irradiance.rgb *
+           sun_share_below(view.sun.xyz, below, view.attenuation.w, on(TARN_FLAG_SCHLICK));
+}
+
+// Radiance that leaves the ground where a part ended: land in the air, bed under water.
+//
+//   path_m  length of the way from the camera, for the footprint of a pixel
+vec3 ground_radiance(Part part, End end, float path_m) {
+    Field field = field_of(view);
+    float z = part.origin.z + end.t * part.direction.z;
+    vec4 corners = textureGather(heights, (vec2(end.cell) + 1.0) * field.texel, 0) * field.ground_m.y;
+    if (!part.in_water && z < bilinear(corners, end.inside) - view.options.x) {
+        // The side of the block that the scene is cut out of.
+        vec3 earth = view.look.w < 0.0 ? vec3(0.19, 0.155, 0.115) : vec3(view.look.w);
+        float rise = normalize(vec3(-part.direction.xy, 0.5)).z;
+        return earth * inverse_pi * view.sky_irradiance.rgb * (0.5 + 0.5 * rise);
+    }
+    vec2 gradient = ground_gradient(heights, field.nodes, end.cell, end.inside, field.ground_m.y);
+    vec3 normal = normal_of(gradient, view.grid.z);
+    vec3 albedo = vec3(view.look.w);
+    if (view.look.w < 0.0) {
+        float footprint = view.camera.w * path_m;
+        float shore = part.in_water ? part.level : view.look.z;
+        vec2 nodes = vec2(end.cell) + end.inside;
+        float near_water = water_share(heights, field.nodes, end.cell, end.inside);
+        albedo = ground_albedo(nodes * view.grid.z, z - shore, part.in_water, near_water, view.look.x - shore,
+                               view.look.y - shore, length(gradient) / view.grid.z, footprint);
+        if (on(TARN_FLAG_ORTHO) && !part.in_water) {
+            vec2 at = (nodes - view.ortho.xy) / view.ortho.zw;
+            if (all(greaterThan(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)))) {
+                float lod = max(0.0, log2(max(footprint, 1e-6) / view.ortho_lod.x));
+                vec4 photo = textureLod(ortho, at, lod);
+                albedo = mix(albedo, photo_albedo * photo.rgb, photo.a);
+            }
+        }
+    }
+    vec3 attenuation = view.attenuation.rgb;
+    vec3 towards = part.in_water ? sun_below(view.sun.xyz, view.attenuation.w) : view.sun.xyz;
+    float depth = part.in_water ? max(part.level - z, 0.0) : 0.0;
+    vec3 irradiance = (0.5 + 0.5 * normal.z) *
+                      (part.in_water ? view.sky_irradiance.rgb * sky_entering * transmittance(attenuation, sky_slant * depth)
+                                     : view.sky_irradiance.rgb);
+    if ((end.flags & end_lit) != 0u || (!on(TARN_FLAG_SHADOWS) && view.sun.z > 0.0))
+        irradiance += max(dot(normal, towards), 0.0) *
+                      (part.in_water ? sun_irradiance_below(towards) * transmittance(attenuation, depth / towards.z)
+                                     : view.sun_irradiance.rgb);
+    return albedo * inverse_pi * irradiance;
+}
+
+// Radiance that a part brings to where it began; `remaining` is what is left there of light from its end.
+vec3 part_radiance(Part part, End end, float before_m, out vec3 remaining) {
+    vec3 radiance = vec3(0.0);
+    remaining = vec3(1.0);
+    vec3 attenuation = view.attenuation.rgb;
+    if (part.in_water) {
+        float sink = -part.direction.z, depth = depth_of(part);
+        vec3 below = sun_below(view.sun.xyz, view.attenuation.w);
+        radiance = path_radiance(view.backscattering.rgb, attenuation, sun_irradiance_below(below), 1.0 / below.z,
+                                 depth, sink, end.t) +
+                   path_radiance(view.backscattering.rgb, attenuation,
+                                 view.sky_irradiance.rgb * (sky_entering * sky_slant), sky_slant, depth, sink, end.t);
+        remaining = transmittance(attenuation, end.t);
+    }
+    if ((end.flags & end_ground) != 0u)
+        radiance += remaining * ground_radiance(part, end, before_m + end.t);
+    else if ((end.flags & end_surface) == 0u && !part.in_water)
+        radiance += sky(part.direction);
+    return radiance;
+}
+
+void main() {
+    ivec2 local = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(local, view.tile.zw)))
+        return;
+    ivec2 pixel = local + view.tile.xy;
+    Part first = camera_part(view, pixel);
+    End first_end = unpack_end(imageLoad(hits[0], local));
+    vec3 remaining;
+    vec3 radiance = part_radiance(first, first_end, 0.0, remaining);
+    if ((first_end.flags & end_surface) != 0u)
+        for (int number = 1; number < 3; ++number) {
+            Part part = split_part(view, first, first_end, number);
+            if (!wanted(view, part, number))
+                continue;
+            End end = unpack_end(number == 1 ? imageLoad(hits[1], local) : imageLoad(hits[2], local));
+            vec3 ignored;
+            radiance += remaining * part.weight * part_radiance(part, end, first_end.t, ignored);
+        }
+    radiance *= view.options.w;
+    if (view.offset.z > 0.5)
+        radiance += imageLoad(radiance_image, pixel).rgb;
+    imageStore(radiance_image, pixel, vec4(radiance, 1.0));
+}
