@@ -16,7 +16,7 @@ std::string lake_lines(const LakeRecord& lake) {
                            ", level ", fixed(lake.level_m, 2), " m\n");
     out += text("  area        ", format_area(lake.area_m2), " in the grid's projection, ",
                 format_area(lake.true_area_m2), " on the ellipsoid\n");
-    if (lake.bed == Bed::unknown)
+    if (!lake.volume_m3 || !lake.max_depth_m || !lake.mean_depth_m)
         out += "  bed         unknown: no volume, no depth\n";
     else
         out += text("  volume      ", format_volume(*lake.volume_m3), "\n  depth       ",

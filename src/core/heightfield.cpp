@@ -29,7 +29,7 @@ double Heightfield::max_elevation_m() const {
 }
 
 Heightfield quantise(std::span<const float> elevations_m, GridSize size, double spacing_m,
-                     int spare_codes) {
+                     int spare_codes, std::optional<double> include_m) {
     if (size.cols < 2 || size.rows < 2)
         throw Error(text("grid is ", size.cols, " x ", size.rows, ", need at least 2 x 2"));
     if (!(spacing_m > 0.0)) // also rejects NaN
@@ -43,13 +43,15 @@ Heightfield quantise(std::span<const float> elevations_m, GridSize size, double 
                              i / std::size_t(size.cols), " is not finite"),
                         "fill or mask no-data cells before quantising");
 
-    const auto [low, high] = std::minmax_element(elevations_m.begin(), elevations_m.end());
+    const auto [least, greatest] = std::minmax_element(elevations_m.begin(), elevations_m.end());
+    const double low = std::min(double(*least), include_m.value_or(*least));
+    const double high = std::max(double(*greatest), include_m.value_or(*greatest));
     Heightfield field;
     field.codes = Grid<std::uint16_t>(size);
     field.spacing_m = spacing_m;
-    const double range_m = double(*high) - double(*low);
+    const double range_m = high - low;
     field.scale_m = range_m > 0.0 ? range_m / (65535.0 - 2.0 * spare_codes) : 1.0;
-    field.offset_m = *low - spare_codes * field.scale_m;
+    field.offset_m = low - spare_codes * field.scale_m;
     for (std::size_t i = 0; i < elevations_m.size(); ++i)
         field.codes.values[i] = static_cast<std::uint16_t>(
             std::lround((double(elevations_m[i]) - field.offset_m) / field.scale_m));

@@ -31,8 +31,8 @@ bool has_dry_neighbour(const Grid<unsigned char>& wet, Node at) {
 } // namespace
 
 std::vector<std::string> merge_bathymetry(Grid<float>& z, const Grid<unsigned char>& wet,
-                                          double level_m, Grid<float> bathymetry,
-                                          BathymetryKind kind) {
+                                          const Grid<unsigned char>& surface, double surface_m,
+                                          Grid<float> bathymetry, BathymetryKind kind) {
     std::vector<float> inside;
     for (std::size_t i = 0; i < wet.values.size(); ++i)
         if (wet.values[i] && !std::isnan(bathymetry.values[i]))
@@ -46,7 +46,7 @@ std::vector<std::string> merge_bathymetry(Grid<float>& z, const Grid<unsigned ch
         std::vector<float> to_zero, to_level;
         for (const float v : inside) {
             to_zero.push_back(std::abs(v));
-            to_level.push_back(std::abs(v - float(level_m)));
+            to_level.push_back(std::abs(v - float(surface_m)));
         }
         const auto tenth = [](std::vector<float>& v) {
             const auto at = v.begin() + std::ptrdiff_t(v.size() / 10);
@@ -61,6 +61,7 @@ std::vector<std::string> merge_bathymetry(Grid<float>& z, const Grid<unsigned ch
     // Everything below is depth, positive down.
     const bool negative = kind == BathymetryKind::depth && median(inside) < 0.0;
     Grid<float> depth(z.size, std::numeric_limits<float>::quiet_NaN());
+    Grid<unsigned char> survey(z.size);
     std::size_t surveyed = 0, total = 0, above = 0;
     for (std::size_t i = 0; i < wet.values.size(); ++i) {
         if (!wet.values[i])
@@ -69,33 +70,40 @@ std::vector<std::string> merge_bathymetry(Grid<float>& z, const Grid<unsigned ch
         const float v = bathymetry.values[i];
         if (std::isnan(v))
             continue;
-        const float d = kind == BathymetryKind::elevation ? float(level_m) - v : negative ? -v : v;
-        above += d < 0.0f;
+        const float d = kind == BathymetryKind::elevation ? float(surface_m) - v
+                        : negative                        ? -v
+                                                          : v;
+        above += d < 0.0f && surface.values[i];
+        // Above the surveyed surface the DEM knows the ground; only the surface itself is replaced.
+        if (d < 0.0f && !surface.values[i])
+            continue;
         depth.values[i] = std::max(d, 0.0f);
+        survey.values[i] = 1;
         ++surveyed;
     }
     // The shoreline holds the interpolation: depth 0 on dry nodes beside the lake.
     for (int row = 0; row < wet.size.rows; ++row)
         for (int col = 0; col < wet.size.cols; ++col) {
             const Node at{col, row};
-            if (!wet[at])
+            if (!surface[at])
                 continue;
             for (int dr = -1; dr <= 1; ++dr)
                 for (int dc = -1; dc <= 1; ++dc) {
                     const Node n{col + dc, row + dr};
-                    if (wet.contains(n) && !wet[n])
+                    if (wet.contains(n) && !surface[n] && std::isnan(depth[n]))
                         depth[n] = 0.0f;
                 }
         }
     if (surveyed < total)
         interpolate_voids(depth, 1000);
     for (std::size_t i = 0; i < wet.values.size(); ++i)
-        if (wet.values[i] && !std::isnan(depth.values[i]))
-            z.values[i] = float(level_m) - depth.values[i];
-    notes.push_back(text("bathymetry covers ", surveyed, " of the lake's ", total, " nodes; ",
-                         total - surveyed, " between survey and shore interpolated"));
+        if (wet.values[i] && !std::isnan(depth.values[i]) &&
+            (surface.values[i] || survey.values[i]))
+            z.values[i] = float(surface_m) - depth.values[i];
+    notes.push_back(text("bathymetry covers ", surveyed, " of the lake's ", total,
+                         " nodes; what lies between survey and shore is interpolated"));
     if (above > 0)
-        notes.push_back(text(above, " bathymetry values lay above the level; taken as depth 0"));
+        notes.push_back(text(above, " bathymetry values lay above the surface; taken as depth 0"));
     return notes;
 }
 

@@ -20,6 +20,7 @@ public:
     GdalMessages(const GdalMessages&) = delete;
     GdalMessages& operator=(const GdalMessages&) = delete;
     std::string last() const; ///< the newest warning or error, or "no further message"
+    bool warned() const { return !kept_.last.empty(); }
     bool failed() const { return kept_.failed; } ///< an error (not only warnings) was said
 
     struct Kept {

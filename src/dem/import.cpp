@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tarn::dem {
 
@@ -74,8 +75,9 @@ struct Choice {
 };
 
 /// `--level auto`: the water surface at (or nearest to) the seed, or the largest inland one.
-Choice find_level(const Mosaic& mosaic, std::optional<Node> at, std::vector<std::string>& notes) {
-    const auto flats = find_flats(mosaic.elevation_m);
+Choice find_level(const Mosaic& mosaic, const std::vector<FlatSurface>& flats,
+                  const Grid<unsigned char>& mask, std::optional<Node> at,
+                  std::vector<std::string>& notes) {
     if (flats.empty())
         throw Error("no flat water surface was found in the elevation data",
                     "it may hold the lake's bed: give the level with --level M");
@@ -85,7 +87,6 @@ Choice find_level(const Mosaic& mosaic, std::optional<Node> at, std::vector<std:
     const FlatSurface* chosen = nullptr;
     if (at) {
         // The nearest flat node: a seed on an island or a jetty still means this lake.
-        const Grid<unsigned char> mask = flat_mask(mosaic.elevation_m);
         std::optional<Node> nearest;
         long best = 0;
         constexpr int reach = 50;
@@ -102,7 +103,7 @@ Choice find_level(const Mosaic& mosaic, std::optional<Node> at, std::vector<std:
             throw Error(text("no flat water surface within ", reach, " nodes of --at"),
                         "move it onto the lake, or give the level with --level M");
         const double level = mosaic.elevation_m[*nearest];
-        notes.push_back(text("level ", fixed(level, 2), " m taken from the flat surface at ",
+        notes.push_back(text("level ", fixed(level, 4), " m taken from the flat surface at ",
                              place(mosaic, *nearest)));
         return {level, *nearest};
     }
@@ -113,10 +114,51 @@ Choice find_level(const Mosaic& mosaic, std::optional<Node> at, std::vector<std:
         }
     if (!chosen)
         chosen = &flats.front();
-    notes.push_back(text("level ", fixed(chosen->level_m, 2), " m taken from the largest of ",
+    notes.push_back(text("level ", fixed(chosen->level_m, 4), " m taken from the largest of ",
                          flats.size(), " flat surfaces: ", area(*chosen), " at ",
                          place(mosaic, chosen->deepest)));
     return {chosen->level_m, chosen->deepest};
+}
+
+/// A level typed from a rounded figure may lie some millimetres below the water surface that it
+/// means (179.65 for 179.6513): then the surface itself is taken, and said.
+double snapped(double level_m, const std::vector<FlatSurface>& flats, const Mosaic& mosaic,
+               const std::optional<Node>& seed, std::vector<std::string>& notes) {
+    constexpr double rounding_m = 0.005;
+    for (const FlatSurface& flat : flats) { // largest first
+        const double above = double(flat.level_m) - level_m;
+        if (!(above > level_tolerance_m && above <= rounding_m) ||
+            (seed && mosaic.elevation_m[*seed] != flat.level_m))
+            continue;
+        notes.push_back(text("level ", level_m, " m taken as ", fixed(flat.level_m, 4),
+                             " m, the flat water surface at ", place(mosaic, flat.deepest)));
+        return flat.level_m;
+    }
+    return level_m;
+}
+
+Node largest_basin_seed(const Mosaic& mosaic, const Voids& voids, double level_m,
+                        std::vector<std::string>& notes) {
+    const auto basins = find_basins(mosaic.elevation_m, voids.outside, level_m);
+    const auto lake = largest_lake(basins);
+    if (!lake)
+        throw Error(text("nothing lies below the level of ", fixed(level_m, 2),
+                         " m: the ground reaches from ",
+                         fixed(*std::min_element(mosaic.elevation_m.values.begin(),
+                                                 mosaic.elevation_m.values.end()),
+                               2),
+                         " m up"),
+                    "raise --level, or check its vertical datum");
+    const double cell = mosaic.spacing_m * mosaic.spacing_m;
+    notes.push_back("no seed given; the largest lake at this level was taken, at " +
+                    place(mosaic, lake->seed));
+    if (basins.front().nodes > lake->nodes)
+        notes.push_back(text(
+            "larger ground below this level is open at the data's edge and was not taken for a "
+            "lake: ",
+            fixed(double(basins.front().nodes) * cell / 1e6, 3), " km2 around ",
+            place(mosaic, basins.front().seed), "; --at LAT,LON takes it"));
+    return lake->seed;
 }
 
 } // namespace
@@ -149,6 +191,10 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress) 
     report.notes.insert(report.notes.end(), mosaic.notes.begin(), mosaic.notes.end());
     report.nodes = mosaic.elevation_m.size.count();
 
+    progress.report(0.61, "finding water surfaces");
+    const std::vector<FlatSurface> flats =
+        find_flats(mosaic.elevation_m); // voids are still voids here
+    Grid<unsigned char> flat = flat_mask(mosaic.elevation_m);
     progress.report(0.62, "filling voids");
     const Voids voids = fill_voids(mosaic.elevation_m);
     report.void_nodes = voids.count;
@@ -156,7 +202,6 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress) 
     report.outside_nodes = voids.count - voids.inside;
 
     progress.report(0.66, "finding the lake");
-    const Grid<unsigned char> flat = flat_mask(mosaic.elevation_m);
     report.flat_share =
         double(std::count(flat.values.begin(), flat.values.end(), 1)) / double(flat.values.size());
     std::optional<Node> seed;
@@ -164,9 +209,9 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress) 
         seed = node_at(mosaic, *options.at);
     Choice choice;
     if (!options.level_m) {
-        choice = find_level(mosaic, seed, report.notes);
+        choice = find_level(mosaic, flats, flat, seed, report.notes);
     } else {
-        choice.level_m = *options.level_m;
+        choice.level_m = snapped(*options.level_m, flats, mosaic, seed, report.notes);
         if (seed) {
             const auto wet =
                 nearest_wet(mosaic.elevation_m, voids.outside, choice.level_m, *seed, 10);
@@ -175,19 +220,7 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress) 
                                        place(mosaic, *wet) + ", was taken");
             choice.seed = wet.value_or(*seed);
         } else {
-            const auto lake =
-                largest_lake(find_basins(mosaic.elevation_m, voids.outside, choice.level_m));
-            if (!lake)
-                throw Error(text("nothing lies below the level of ", fixed(choice.level_m, 2),
-                                 " m: the ground reaches from ",
-                                 fixed(*std::min_element(mosaic.elevation_m.values.begin(),
-                                                         mosaic.elevation_m.values.end()),
-                                       2),
-                                 " m up"),
-                            "raise --level, or check its vertical datum");
-            choice.seed = lake->seed;
-            report.notes.push_back("no seed given; the largest lake at this level was taken, at " +
-                                   place(mosaic, choice.seed));
+            choice.seed = largest_basin_seed(mosaic, voids, choice.level_m, report.notes);
         }
     }
 
@@ -198,8 +231,9 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress) 
     record.level_m = choice.level_m;
     lake.wet = fill_from(mosaic.elevation_m, voids.outside, choice.level_m, choice.seed,
                          &record.open_at_edge);
-    if (!options.level_m) {
-        // A surface that was found flat ends where the flat ends: whole-metre models vary by one.
+    if (!options.level_m && record.open_at_edge) {
+        // A surface that was found flat and yet runs out of the data ends where the flat ends:
+        // whole-metre models vary by one. (Closed lower ground is its bed.)
         bool open = false;
         const Grid<unsigned char> surface =
             fill_from(mosaic.elevation_m, voids.outside, choice.level_m, choice.seed, &open,
@@ -217,12 +251,18 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress) 
             record.open_at_edge = open;
         }
     }
-    std::size_t nodes = 0, flat_nodes = 0;
+    // Neither a flat surface nor an interpolated void says anything about the bed.
+    std::size_t nodes = 0, flat_nodes = 0, void_nodes = 0;
     for (std::size_t i = 0; i < lake.wet.values.size(); ++i) {
         nodes += lake.wet.values[i];
+        void_nodes += lake.wet.values[i] & voids.filled.values[i];
+        flat.values[i] |= voids.filled.values[i];
         flat_nodes += lake.wet.values[i] & flat.values[i];
     }
     record.flat_share = double(flat_nodes) / double(nodes);
+    if (void_nodes > 0)
+        report.notes.push_back(
+            text(void_nodes, " nodes of the lake had no data; their heights are interpolated"));
     if (record.open_at_edge)
         report.notes.push_back("the lake touches the edge of the data: it may go on outside, and "
                                "its figures count only what is inside");
@@ -230,11 +270,37 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress) 
     if (options.bathymetry) {
         progress.report(0.7, "merging the bathymetry");
         auto surveys = open_sources(*options.bathymetry, {.crs = "", .nodata = {}});
-        surveys.front().input.role = "bathymetry";
-        report.inputs.push_back(surveys.front().input);
-        const auto notes = merge_bathymetry(mosaic.elevation_m, lake.wet, choice.level_m,
-                                            onto_grid(surveys.front(), mosaic, "bilinear"),
-                                            options.bathymetry_kind);
+        Grid<float> survey(mosaic.elevation_m.size, std::numeric_limits<float>::quiet_NaN());
+        for (Source& part : surveys) { // a zip may hold several; the last one counts, as with tiles
+            part.input.role = "bathymetry";
+            report.inputs.push_back(part.input);
+            report.notes.insert(report.notes.end(), part.notes.begin(), part.notes.end());
+            const Grid<float> values = onto_grid(part, mosaic, "bilinear");
+            for (std::size_t i = 0; i < survey.values.size(); ++i)
+                if (!std::isnan(values.values[i]))
+                    survey.values[i] = values.values[i];
+        }
+        // Where the DEM holds the water's surface of its own day, depths count from that; ground
+        // that a higher level floods besides is known.
+        const bool surface_known = record.flat_share > 0.5;
+        Grid<unsigned char> surface = lake.wet;
+        double surface_m = choice.level_m;
+        if (surface_known) {
+            std::vector<float> heights;
+            for (std::size_t i = 0; i < surface.values.size(); ++i) {
+                surface.values[i] = lake.wet.values[i] & flat.values[i];
+                if (surface.values[i])
+                    heights.push_back(mosaic.elevation_m.values[i]);
+            }
+            std::nth_element(heights.begin(), heights.begin() + std::ptrdiff_t(heights.size() / 2),
+                             heights.end());
+            surface_m = heights[heights.size() / 2];
+            if (std::abs(surface_m - choice.level_m) > 0.05)
+                report.notes.push_back(text("depths count from the DEM's water surface at ",
+                                            fixed(surface_m, 2), " m"));
+        }
+        const auto notes = merge_bathymetry(mosaic.elevation_m, lake.wet, surface, surface_m,
+                                            std::move(survey), options.bathymetry_kind);
         report.notes.insert(report.notes.end(), notes.begin(), notes.end());
         record.bed = Bed::measured;
     } else {
@@ -255,7 +321,8 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress) 
     }
 
     progress.report(0.78, "packing heights");
-    out.ground = quantise(mosaic.elevation_m.values, mosaic.elevation_m.size, mosaic.spacing_m, 4);
+    out.ground = quantise(mosaic.elevation_m.values, mosaic.elevation_m.size, mosaic.spacing_m, 4,
+                          choice.level_m);
     out.ground.west_m = mosaic.west_m;
     out.ground.north_m = mosaic.north_m;
     const std::size_t raised = separate(out.ground, lake);

@@ -132,15 +132,20 @@ bool in_phase(const Source& a, const Source& b) {
 Dataset join(const std::vector<Source*>& tiles) {
     GdalMessages messages;
     std::vector<GDALDatasetH> handles;
-    for (const Source* tile : tiles)
+    for (const Source* tile : tiles) {
+        // GDAL would leave out tiles whose vertical datum is declared differently.
+        const OGRSpatialReference plane = horizontal(tile->crs);
+        tile->raster->SetSpatialRef(&plane);
         handles.push_back(GDALDataset::ToHandle(tile->raster.get()));
+    }
     Arguments arguments{"-vrtnodata", "-32768"}; // each tile's own nodata is honoured as well
     GDALBuildVRTOptions* options = GDALBuildVRTOptionsNew(arguments.get(), nullptr);
     Dataset vrt(GDALDataset::FromHandle(
         GDALBuildVRT("", int(handles.size()), handles.data(), nullptr, options, nullptr)));
     GDALBuildVRTOptionsFree(options);
-    if (!vrt)
-        throw Error("the tiles cannot be joined (" + messages.last() + ")");
+    if (!vrt || messages.warned()) // a warning means a tile left out
+        throw Error("the tiles cannot be joined (" + messages.last() + ")",
+                    "check with gdalinfo that they belong together");
     return vrt;
 }
 
@@ -217,7 +222,6 @@ Grid<float> warp(const std::vector<GDALDataset*>& inputs, const Target& target,
                         "nan",
                         "-et",
                         "0.02",
-                        "-multi",
                         "-wo",
                         "NUM_THREADS=ALL_CPUS",
                         "-novshiftgrid"};
@@ -230,7 +234,7 @@ Grid<float> warp(const std::vector<GDALDataset*>& inputs, const Target& target,
     watcher.check();
     if (!out)
         throw Error("the rasters cannot be warped (" + messages.last() + ")",
-                    "check their CRS, or give --crs");
+                    "check that the files are whole (gdalinfo -checksum) and their CRS is right");
     return read_window(*out, 0, 0, target.size);
 }
 
@@ -344,6 +348,9 @@ void lay_flats(Grid<float>& z, const Grid<float>& flat) {
             const Node at{col, row};
             const float level = flat[at];
             if (std::isnan(level))
+                continue;
+            // Lower ground here comes from another raster that knows the bed: it stays.
+            if (!(z[at] >= level || std::isnan(z[at]) || dipped(z, at, level)))
                 continue;
             z[at] = level;
             bool rim = false;

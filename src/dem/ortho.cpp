@@ -36,7 +36,16 @@ Ortho warp_ortho(Source& source, const geo::Frame& frame, const Heightfield& gro
         view = translate(*input, expand, source.name);
         input = view.get();
     } else if (first.GetRasterDataType() != GDT_Byte) {
-        Arguments scale{"-of", "MEM", "-ot", "Byte", "-scale"};
+        // Colours are stretched from their own range; an alpha band keeps its meaning.
+        Arguments scale{"-of", "MEM", "-ot", "Byte"};
+        const int bands = input->GetRasterCount(),
+                  colours = bands == 2 || bands == 4 ? bands - 1 : bands;
+        for (int b = 1; b <= bands; ++b) {
+            scale.add(text("-scale_", b));
+            if (b > colours)
+                for (const char* word : {"0", "65535", "0", "255"})
+                    scale.add(word);
+        }
         view = translate(*input, scale, source.name);
         input = view.get();
     }
@@ -87,7 +96,6 @@ Ortho warp_ortho(Source& source, const geo::Frame& frame, const Heightfield& gro
                         "-r",
                         spacing > 1.5 * native ? "average" : "bilinear",
                         "-dstalpha",
-                        "-multi",
                         "-wo",
                         "NUM_THREADS=ALL_CPUS"};
     GDALWarpAppOptions* options = GDALWarpAppOptionsNew(arguments.get(), nullptr);

@@ -17,7 +17,11 @@ namespace fs = std::filesystem;
 Source::Source() = default;
 Source::Source(Source&&) noexcept = default;
 Source& Source::operator=(Source&&) noexcept = default;
-Source::~Source() { raster.reset(); } // before `original`, which it reads from
+Source::~Source() { // views before what they read from
+    raster.reset();
+    while (!steps.empty())
+        steps.pop_back();
+}
 
 std::string describe(const OGRSpatialReference& crs) {
     if (crs.IsEmpty())
@@ -139,6 +143,16 @@ Source open_one(const std::string& path, const std::string& crs, bool needs_crs)
                              ", ", lat1, "..", lat0),
                         "its coordinates look like metres: give their CRS with --crs EPSG:...");
     }
+    if (source.crs.IsProjected()) {
+        const double* g = source.transform.v;
+        const double reach =
+            std::max({std::abs(g[0]), std::abs(g[3]), std::abs(g[0] + g[1] * source.cols),
+                      std::abs(g[3] + g[5] * source.rows)});
+        if (reach <= 540.0 && std::abs(g[1]) < 0.05 && std::abs(g[5]) < 0.05)
+            throw Error(text(source.name, ": declared as metres, but lies at ", g[0], ", ", g[3],
+                             " with pixels of ", g[1]),
+                        "its coordinates look like degrees: give --crs EPSG:4326");
+    }
     source.input.name = source.name;
     source.input.format = ds.GetDriverName();
     source.input.crs = describe(source.crs);
@@ -153,6 +167,78 @@ Source open_one(const std::string& path, const std::string& crs, bool needs_crs)
     return source;
 }
 
+Dataset translate(GDALDataset& from, Arguments& arguments, const std::string& name,
+                  const GdalMessages& messages) {
+    GDALTranslateOptions* options = GDALTranslateOptionsNew(arguments.get(), nullptr);
+    Dataset out(
+        GDALDataset::FromHandle(GDALTranslate("", GDALDataset::ToHandle(&from), options, nullptr)));
+    GDALTranslateOptionsFree(options);
+    if (!out)
+        throw Error(name + ": cannot be read (" + messages.last() + ")",
+                    "try gdalinfo -checksum on it");
+    return out;
+}
+
+/// A view of band 1 as stored, in which every kind of void is the one declared nodata value: what
+/// the file declares, a mask of its own, --nodata, and for floating point NaN and -9999, which
+/// writers forget to declare and which no place on land reaches.
+Dataset with_voids_declared(Source& source, const std::optional<double>& nodata,
+                            const GdalMessages& messages) {
+    GDALDataset& ds = *source.original;
+    GDALRasterBand& band = *ds.GetRasterBand(1);
+    int declared = 0;
+    double value = band.GetNoDataValue(&declared);
+    const bool masked = (band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) != 0;
+    const bool floating = GDALDataTypeIsFloating(band.GetRasterDataType()) != 0;
+    const bool second = nodata && declared && *nodata != value;
+    if (!masked && !second && (declared || !floating)) {
+        Arguments view{"-of", "VRT", "-b", "1"};
+        if (nodata && !declared) {
+            view.add("-a_nodata");
+            view.add(text(*nodata));
+        }
+        return translate(ds, view, source.name, messages);
+    }
+    Arguments copy{"-of", "MEM", "-ot", "Float32", "-b", "1"};
+    Dataset out = translate(ds, copy, source.name, messages);
+    GDALRasterBand& values = *out->GetRasterBand(1);
+    const float mark = -32768.0f;
+    std::vector<float> line(std::size_t(source.cols));
+    std::vector<unsigned char> mask(std::size_t(source.cols), 255);
+    std::size_t odd = 0;
+    for (int row = 0; row < source.rows; ++row) {
+        if (values.RasterIO(GF_Read, 0, row, source.cols, 1, line.data(), source.cols, 1,
+                            GDT_Float32, 0, 0) != CE_None ||
+            (masked && band.GetMaskBand()->RasterIO(GF_Read, 0, row, source.cols, 1, mask.data(),
+                                                    source.cols, 1, GDT_Byte, 0, 0) != CE_None))
+            throw Error(source.name + ": cannot be read (" + messages.last() + ")",
+                        "try gdalinfo -checksum on it");
+        for (std::size_t i = 0; i < line.size(); ++i) {
+            const float z = line[i];
+            const bool forgotten =
+                !declared && (z == -9999.0f || z == -32768.0f || !std::isfinite(z));
+            odd += forgotten;
+            if (mask[i] == 0 || forgotten || !std::isfinite(z) ||
+                (declared && z == static_cast<float>(value)) ||
+                (nodata && z == static_cast<float>(*nodata)))
+                line[i] = mark;
+        }
+        if (values.RasterIO(GF_Write, 0, row, source.cols, 1, line.data(), source.cols, 1,
+                            GDT_Float32, 0, 0) != CE_None)
+            throw Error(source.name + ": cannot be read (" + messages.last() + ")");
+    }
+    values.SetNoDataValue(mark);
+    values.SetScale(band.GetScale());
+    values.SetOffset(band.GetOffset());
+    if (odd > 0)
+        source.notes.push_back(
+            text(source.name, ": ", odd, " undeclared voids (NaN, -9999) taken as no data"));
+    if (second)
+        source.notes.push_back(text(source.name, ": declares nodata ", value, "; --nodata ",
+                                    *nodata, " is taken as void too"));
+    return out;
+}
+
 /// Replaces the raster by a view of band 1 as Float32 metres with its nodata declared.
 void to_metres(Source& source, const std::optional<double>& nodata) {
     GdalMessages messages;
@@ -164,77 +250,46 @@ void to_metres(Source& source, const std::optional<double>& nodata) {
         throw Error(source.name + ": is a picture, not elevations", "give it with --ortho");
     if (GDALDataTypeIsComplex(band.GetRasterDataType()))
         throw Error(source.name + ": holds complex numbers, not elevations");
-    int has_nodata = 0;
-    band.GetNoDataValue(&has_nodata);
     double factor = 1.0;
-    const std::string unit = band.GetUnitType();
-    if (unit == "ft" || unit == "foot" || unit == "feet" || unit == "international foot")
+    std::string unit = band.GetUnitType();
+    if (unit.empty() && source.crs.IsCompound()) { // formats that carry the unit in the CRS only
+        const char* name = nullptr;
+        factor = source.crs.GetTargetLinearUnits("COMPD_CS|VERT_CS", &name);
+        if (!(factor > 1e-4 && factor < 1e4))
+            factor = 1.0;
+        if (factor != 1.0)
+            unit = name ? name : "the CRS's unit";
+    } else if (unit == "ft" || unit == "foot" || unit == "feet" || unit == "international foot") {
         factor = 0.3048;
-    else if (unit == "US survey foot" || unit == "us-ft" || unit == "ftUS")
+    } else if (unit == "US survey foot" || unit == "us-ft" || unit == "ftUS") {
         factor = 1200.0 / 3937.0;
-    else if (unit == "cm" || unit == "centimetre")
+    } else if (unit == "cm" || unit == "centimetre") {
         factor = 0.01;
-    else if (!unit.empty() && unit != "m" && unit != "metre" && unit != "meter" &&
-             unit != "metres" && unit != "meters")
+    } else if (!unit.empty() && unit != "m" && unit != "metre" && unit != "meter" &&
+               unit != "metres" && unit != "meters") {
         source.notes.push_back(source.name + ": vertical unit '" + unit +
                                "' is not known; taken as metres");
-    Arguments arguments{"-of", "VRT", "-ot", "Float32", "-b", "1", "-unscale"};
-    const bool scaled = band.GetScale() != 1.0 || band.GetOffset() != 0.0;
-    if (factor != 1.0) {
+    }
+    if (factor != 1.0)
         source.notes.push_back(text(source.name, ": heights in ", unit, ", turned into metres"));
-        // -unscale applies the band's own scale first; a second view turns feet into metres.
-    }
-    if (nodata && !has_nodata) {
-        arguments.add("-a_nodata");
-        arguments.add(text(*nodata));
-    }
-    GDALTranslateOptions* options = GDALTranslateOptionsNew(arguments.get(), nullptr);
-    Dataset view(
-        GDALDataset::FromHandle(GDALTranslate("", GDALDataset::ToHandle(&ds), options, nullptr)));
-    GDALTranslateOptionsFree(options);
-    if (!view)
-        throw Error(source.name + ": cannot be read (" + messages.last() + ")");
+
+    Dataset view = with_voids_declared(source, nodata, messages);
+    const bool scaled = band.GetScale() != 1.0 || band.GetOffset() != 0.0;
+    Arguments unscale{"-of", "VRT", "-ot", "Float32", "-b", "1", "-unscale"};
+    Dataset metres = translate(*view, unscale, source.name, messages);
+    source.steps.push_back(std::move(view));
     if (factor != 1.0) {
         // GDAL's -scale maps [0, 1] to [0, factor] linearly and leaves nodata alone.
         Arguments feet{"-of", "MEM", "-ot", "Float32", "-scale", "0", "1", "0", text(factor)};
-        options = GDALTranslateOptionsNew(feet.get(), nullptr);
-        Dataset metres(GDALDataset::FromHandle(
-            GDALTranslate("", GDALDataset::ToHandle(view.get()), options, nullptr)));
-        GDALTranslateOptionsFree(options);
-        if (!metres)
-            throw Error(source.name + ": cannot be read (" + messages.last() + ")");
-        view = std::move(metres);
-    }
-    if (nodata && has_nodata && *nodata != band.GetNoDataValue()) {
-        // Two kinds of void: a copy in memory turns the second into the first.
-        Arguments copy{"-of", "MEM"};
-        options = GDALTranslateOptionsNew(copy.get(), nullptr);
-        Dataset both(GDALDataset::FromHandle(
-            GDALTranslate("", GDALDataset::ToHandle(view.get()), options, nullptr)));
-        GDALTranslateOptionsFree(options);
-        if (!both)
-            throw Error(source.name + ": cannot be read (" + messages.last() + ")");
-        GDALRasterBand& values = *both->GetRasterBand(1);
-        const auto declared = static_cast<float>(values.GetNoDataValue());
-        std::vector<float> line(std::size_t(source.cols));
-        for (int row = 0; row < source.rows; ++row) {
-            if (values.RasterIO(GF_Read, 0, row, source.cols, 1, line.data(), source.cols, 1,
-                                GDT_Float32, 0, 0) != CE_None)
-                throw Error(source.name + ": cannot be read (" + messages.last() + ")");
-            std::replace(line.begin(), line.end(), static_cast<float>(*nodata), declared);
-            if (values.RasterIO(GF_Write, 0, row, source.cols, 1, line.data(), source.cols, 1,
-                                GDT_Float32, 0, 0) != CE_None)
-                throw Error(source.name + ": cannot be read (" + messages.last() + ")");
-        }
-        view = std::move(both);
-        source.notes.push_back(text(source.name, ": declares nodata ", band.GetNoDataValue(),
-                                    "; --nodata ", *nodata, " is taken as void too"));
+        Dataset turned = translate(*metres, feet, source.name, messages);
+        source.steps.push_back(std::move(metres));
+        metres = std::move(turned);
     }
     if (scaled)
         source.notes.push_back(text(source.name, ": band scale ", band.GetScale(), " and offset ",
                                     band.GetOffset(), " applied"));
-    view->SetSpatialRef(&source.crs);
-    source.raster = std::move(view);
+    metres->SetSpatialRef(&source.crs);
+    source.raster = std::move(metres);
 }
 
 } // namespace

@@ -15,7 +15,8 @@ namespace tarn::dem {
 struct Source {
     std::string name; ///< file name, for messages
     Dataset raster;
-    Dataset original; ///< what `raster` reads from; must outlive it
+    std::vector<Dataset> steps; ///< views between `original` and `raster`
+    Dataset original;           ///< what they read from; outlives them
     OGRSpatialReference crs;
     GeoTransform transform;
     int cols = 0, rows = 0;

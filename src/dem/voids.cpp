@@ -27,6 +27,38 @@ Dataset wrap(void* data, GridSize size, GDALDataType type) {
     return out;
 }
 
+/// Gives each enclosed void that is left the lowest height around it: a lake without returns is
+/// flat.
+void fill_middles(Grid<float>& z, const Grid<unsigned char>& outside) {
+    Grid<unsigned char> seen(z.size);
+    std::vector<Node> members;
+    for (int row = 0; row < z.size.rows; ++row)
+        for (int col = 0; col < z.size.cols; ++col) {
+            const Node start{col, row};
+            if (!std::isnan(z[start]) || outside[start] || seen[start])
+                continue;
+            float lowest = std::numeric_limits<float>::infinity();
+            members.assign(1, start);
+            seen[start] = 1;
+            for (std::size_t i = 0; i < members.size(); ++i) {
+                const Node at = members[i];
+                for (const Node n : {Node{at.col - 1, at.row}, Node{at.col + 1, at.row},
+                                     Node{at.col, at.row - 1}, Node{at.col, at.row + 1}}) {
+                    if (!z.contains(n) || outside[n])
+                        continue;
+                    if (!std::isnan(z[n])) {
+                        lowest = std::min(lowest, z[n]);
+                    } else if (!seen[n]) {
+                        seen[n] = 1;
+                        members.push_back(n);
+                    }
+                }
+            }
+            for (const Node n : members)
+                z[n] = lowest;
+        }
+}
+
 } // namespace
 
 void interpolate_voids(Grid<float>& values, int reach) {
@@ -67,7 +99,7 @@ void interpolate_voids(Grid<float>& values, int reach) {
 }
 
 Voids fill_voids(Grid<float>& z) {
-    Voids out{.outside = Grid<unsigned char>(z.size)};
+    Voids out{.outside = Grid<unsigned char>(z.size), .filled = Grid<unsigned char>(z.size)};
     float lowest = std::numeric_limits<float>::infinity();
     for (const float value : z.values) {
         out.count += std::isnan(value);
@@ -105,7 +137,10 @@ Voids fill_voids(Grid<float>& z) {
                 push(n);
     }
     out.inside = out.count - queue.size();
+    for (std::size_t i = 0; i < z.values.size(); ++i)
+        out.filled.values[i] = std::isnan(z.values[i]) && !out.outside.values[i];
     interpolate_voids(z, 100);
+    fill_middles(z, out.outside);
     for (float& value : z.values)
         if (std::isnan(value))
             value = lowest;

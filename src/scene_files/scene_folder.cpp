@@ -5,6 +5,7 @@
 #include "image/files.hpp"
 #include "scene_files/scene_json.hpp"
 
+#include <algorithm>
 #include <fcntl.h>
 #include <fstream>
 #include <iterator>
@@ -35,6 +36,30 @@ fs::path member(const fs::path& folder, const std::string& name) {
 bool is_scene(const fs::path& folder) {
     std::error_code failed;
     return fs::is_regular_file(folder / "scene.json", failed);
+}
+
+/// Why a folder may not be replaced by a new scene; empty if it may. Only what tarn itself wrote is
+/// ever thrown away.
+std::string reason_to_keep(const fs::path& target) {
+    std::error_code failed;
+    if (!fs::exists(fs::symlink_status(target, failed)))
+        return {};
+    if (fs::is_symlink(target, failed) || !fs::is_directory(target, failed))
+        return "exists and is no folder";
+    if (fs::is_empty(target, failed))
+        return {};
+    std::ifstream in(target / "scene.json", std::ios::binary);
+    const std::string source{std::istreambuf_iterator<char>(in), {}};
+    if (source.find("\"format\": \"tarn scene\"") == std::string::npos)
+        return "exists and is not a scene folder";
+    for (const auto& entry : fs::directory_iterator(target, failed)) {
+        const std::string name = entry.path().filename().string();
+        static const char* ours[] = {"scene.json", "ground.tif", "water.tif", "ortho.tif",
+                                     "preview.png"};
+        if (std::find(std::begin(ours), std::end(ours), name) == std::end(ours))
+            return "holds '" + name + "', which is not tarn's";
+    }
+    return {};
 }
 
 /// A running import holds a lock on its folder; the system drops it however the process ends.
@@ -110,10 +135,9 @@ StagedFolder::StagedFolder(const fs::path& target) : target_(target.lexically_no
     if (target_.empty() || target_ == "." || target_ == ".." || target_ == "/")
         throw Error("the scene needs a folder name of its own", "give one with -o NAME");
     std::error_code failed;
-    if (fs::exists(target_, failed) && !is_scene(target_) &&
-        !(fs::is_directory(target_, failed) && fs::is_empty(target_, failed)))
-        throw Error(target_.string() + ": exists and is not a scene folder; it is left alone",
-                    "choose another name with -o");
+    if (const std::string reason = reason_to_keep(target_); !reason.empty())
+        throw Error(target_.string() + ": " + reason + "; it is left alone",
+                    "choose another name with -o, or move it away");
     const fs::path parent = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
     fs::create_directories(parent, failed);
     const std::string prefix = "." + target_.filename().string() + ".partial-";

@@ -120,6 +120,20 @@ TEST(Errors, AreOneLineThatSaysWhatAndWhatToDo) {
     EXPECT_TRUE(fs::is_empty(t.path()));
 }
 
+TEST(Errors, ACutOffTileIsOneLineAlsoWhenItIsWarped) {
+    const TempFolder t;
+    Grid<float> z({300, 300});
+    for (std::size_t i = 0; i < z.values.size(); ++i)
+        z.values[i] = float(i * 7919 % 1000);
+    const double g[6] = {9.0, 1.0 / 3600, 0, 46.0, 0, -1.0 / 3600};
+    dem::write_elevations(t / "whole.tif", z, "EPSG:4326", g, "");
+    const std::string bytes = test_support::read_file(t / "whole.tif");
+    std::ofstream(t / "cut.tif", std::ios::binary) << bytes.substr(0, bytes.size() * 2 / 3);
+    expect_one_line("tarn import " + (t / "cut.tif").string() + " --level 500 -o " +
+                        (t / "s").string(),
+                    1, "cut.tif");
+}
+
 TEST(Info, JsonHoldsWhatProgramsRelyOn) {
     const Outcome o = run("tarn info " + shared().scene + " --json");
     ASSERT_EQ(o.code, 0) << o.err;

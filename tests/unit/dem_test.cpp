@@ -277,7 +277,7 @@ TEST(Bed, BathymetryIsReadAsDepthsOfEitherSignOrAsElevations) {
         Grid<float> ground = z, survey = depth;
         for (float& v : survey.values)
             v = datum + sign * v;
-        merge_bathymetry(ground, wet, 100.0, survey, kind);
+        merge_bathymetry(ground, wet, wet, 100.0, survey, kind);
         return ground;
     };
     const auto a = apply(1, 0, BathymetryKind::automatic),
@@ -297,7 +297,7 @@ TEST(Bed, BathymetryIsReadAsDepthsOfEitherSignOrAsElevations) {
     }
     Grid<float> ground = z;
     EXPECT_THROW(
-        merge_bathymetry(ground, wet, 100.0, Grid<float>(z.size, NAN), BathymetryKind::depth),
+        merge_bathymetry(ground, wet, wet, 100.0, Grid<float>(z.size, NAN), BathymetryKind::depth),
         Error);
 }
 

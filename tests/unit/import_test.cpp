@@ -186,6 +186,8 @@ TEST(Import, BadInputGetsOneClearLine) {
     has({.dems = {bowl_tif}, .level_m = 10.0, .crs = "EPSG:nonsense"}, "--crs");
     has({.dems = {bowl_tif}, .level_m = 10.0, .crs = "EPSG:4326"}, "look like metres");
     has({.dems = {bowl_tif}, .level_m = 10.0, .bathymetry = folder / "none.tif"}, "no such file");
+    write(folder / "degrees.tif", bowl(51, 20.0), 15.0, 45.0, 0.0003);
+    has({.dems = {folder / "degrees.tif"}, .level_m = 10.0}, "look like degrees");
     write(folder / "plane.tif", Grid<float>({20, 20}, NAN), 500'000, 5'300'000, 20.0);
     has({.dems = {folder / "plane.tif"}, .level_m = 10.0}, "no elevation data in this region");
     {
@@ -197,6 +199,147 @@ TEST(Import, BadInputGetsOneClearLine) {
     EXPECT_THROW(dem::import_dem({.dems = {bowl_tif}, .level_m = 10.0},
                                  Progress([&](double, const std::string&) { return ++calls < 3; })),
                  Cancelled);
+}
+
+TEST(Import, NoTileIsDroppedForItsVerticalDatum) {
+    const TempFolder folder;
+    const Grid<float> whole = bowl(200, 5.0);
+    for (int k = 0; k < 2; ++k) {
+        Grid<float> part({100, 200});
+        for (int r = 0; r < 200; ++r)
+            for (int c = 0; c < 100; ++c)
+                part[{c, r}] = whole[{c + k * 100, r}];
+        write(folder / (k ? "east.tif" : "west.tif"), part, 500'000 + k * 500.0, 5'300'000, 5.0,
+              k ? "EPSG:32633" : "EPSG:32633+5703");
+    }
+    const auto result =
+        dem::import_dem({.dems = {folder / "west.tif", folder / "east.tif"}, .level_m = 10.0}, {});
+    EXPECT_NEAR(only(result).area_m2, M_PI * 250 * 250, 0.005 * M_PI * 250 * 250);
+    EXPECT_NE(result.report.notes.front().find("vertical datum"), std::string::npos);
+}
+
+TEST(Import, ForgottenVoidsAndMasksAreVoids) {
+    const TempFolder folder;
+    Grid<float> z = bowl(201, 5.0);
+    z[Node(20, 30)] = -9999.0f;
+    z[Node(25, 30)] = NAN;
+    z[Node(120, 100)] = NAN; // in the lake
+    write(folder / "holes.tif", z, 500'000, 5'300'000, 5.0);
+    const auto holes = dem::import_dem({.dems = {folder / "holes.tif"}, .level_m = 10.0}, {});
+    EXPECT_EQ(holes.report.void_nodes, 3u);
+    EXPECT_NEAR(*only(holes).max_depth_m, 10.0, 0.05);
+    EXPECT_LT(holes.ground.scale_m, 0.01); // the codes do not reach down to -9999 m
+    // A mask over the south-western quarter.
+    write(folder / "masked.tif", bowl(201, 5.0), 500'000, 5'300'000, 5.0);
+    {
+        dem::register_drivers();
+        dem::Dataset ds(
+            GDALDataset::Open((folder / "masked.tif").c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+        CPLSetThreadLocalConfigOption("GDAL_TIFF_INTERNAL_MASK", "YES");
+        ASSERT_EQ(ds->CreateMaskBand(GMF_PER_DATASET), CE_None);
+        std::vector<unsigned char> mask(201 * 201, 255);
+        for (int r = 101; r < 201; ++r)
+            std::fill_n(mask.begin() + r * 201, 100, 0);
+        ASSERT_EQ(ds->GetRasterBand(1)->GetMaskBand()->RasterIO(
+                      GF_Write, 0, 0, 201, 201, mask.data(), 201, 201, GDT_Byte, 0, 0),
+                  CE_None);
+    }
+    const auto masked = dem::import_dem({.dems = {folder / "masked.tif"}, .level_m = 10.0}, {});
+    EXPECT_EQ(masked.report.outside_nodes, 100u * 100u);
+    EXPECT_NEAR(only(masked).area_m2, 0.75 * M_PI * 250 * 250, 0.01 * M_PI * 250 * 250);
+    EXPECT_TRUE(only(masked).open_at_edge);
+}
+
+TEST(Import, AVoidLakeHasNoDepthAndABathymetryCountsFromTheSurfaceItWasMadeOn) {
+    const TempFolder folder;
+    // A bowl whose lake at 10 m is void, as laser surveys leave it.
+    Grid<float> z = bowl(301, 5.0), flat = z, depth(z.size, NAN);
+    for (std::size_t i = 0; i < z.values.size(); ++i)
+        if (z.values[i] <= 10.0f) {
+            depth.values[i] = 10.0f - z.values[i];
+            z.values[i] = NAN;
+            flat.values[i] = 10.0f;
+        }
+    write(folder / "void.tif", z, 500'000, 5'300'000, 5.0);
+    const auto hollow = dem::import_dem({.dems = {folder / "void.tif"}, .level_m = 11.0}, {});
+    EXPECT_EQ(only(hollow).bed, Bed::unknown);
+    EXPECT_FALSE(only(hollow).max_depth_m.has_value());
+    // The surface at 10 m, depths surveyed from it, and a level of 15 m: flooded land keeps its
+    // heights.
+    write(folder / "flat.tif", flat, 500'000, 5'300'000, 5.0);
+    write(folder / "depth.tif", depth, 500'000, 5'300'000, 5.0);
+    const auto raised = dem::import_dem(
+        {.dems = {folder / "flat.tif"}, .level_m = 15.0, .bathymetry = folder / "depth.tif"}, {});
+    const double radius_squared =
+        15.0 / 40.0 * 500.0 * 500.0; // volume of a paraboloid: pi r^2 h / 2
+    EXPECT_NEAR(*only(raised).volume_m3, M_PI * radius_squared * 15.0 / 2,
+                0.005 * M_PI * radius_squared * 7.5);
+    EXPECT_EQ(only(raised).bed, Bed::measured);
+}
+
+TEST(Import, ALevelAboveAllGroundKeepsTheShoreRuleAtVoids) {
+    const TempFolder folder;
+    Grid<float> z = bowl(101, 10.0);
+    for (int r = 0; r < 20; ++r)
+        for (int c = 0; c < 20 - r; ++c)
+            z[{c, r}] = NAN;
+    write(folder / "corner.tif", z, 500'000, 5'300'000, 10.0);
+    const auto result = dem::import_dem({.dems = {folder / "corner.tif"}, .level_m = 500.0}, {});
+    const auto& ground = result.ground;
+    const auto& water = result.water;
+    int wet = 0, margin = 0;
+    for (int r = 0; r < 101; ++r)
+        for (int c = 0; c < 101; ++c) {
+            const Node n{c, r};
+            const bool outside = r < 20 && c < 20 - r;
+            if (outside) {
+                margin += water.codes[n] != no_water_code;
+                EXPECT_TRUE(water.codes[n] == no_water_code || ground.elevation_m(n) > 500.0);
+            } else {
+                ++wet;
+                EXPECT_LT(ground.elevation_m(n), water.elevation_m(n));
+            }
+        }
+    EXPECT_GT(margin, 10);
+    EXPECT_NEAR(only(result).area_m2, wet * 100.0, 1e-6);
+}
+
+TEST(Import, SixteenBitPicturesKeepTheirAlpha) {
+    const TempFolder folder;
+    write(folder / "bowl.tif", bowl(101, 10.0), 500'000, 5'300'000, 10.0);
+    {
+        dem::register_drivers();
+        dem::Dataset ds(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+            (folder / "photo.tif").c_str(), 50, 50, 4, GDT_UInt16, nullptr));
+        double g[6] = {500'200, 10, 0, 5'299'800, 0, -10};
+        ds->SetGeoTransform(g);
+        OGRSpatialReference srs;
+        srs.SetFromUserInput("EPSG:32633");
+        ds->SetSpatialRef(&srs);
+        for (int b = 1; b <= 4; ++b) {
+            std::vector<std::uint16_t> v(2500);
+            for (std::size_t i = 0; i < v.size(); ++i)
+                v[i] = b == 4 ? 65535 : std::uint16_t(i * 20);
+            ds->GetRasterBand(b)->SetColorInterpretation(
+                b == 4 ? GCI_AlphaBand : GDALColorInterp(GCI_RedBand + b - 1));
+            ASSERT_EQ(ds->GetRasterBand(b)->RasterIO(GF_Write, 0, 0, 50, 50, v.data(), 50, 50,
+                                                     GDT_UInt16, 0, 0),
+                      CE_None);
+        }
+    }
+    const auto result = dem::import_dem(
+        {.dems = {folder / "bowl.tif"}, .level_m = 10.0, .ortho = folder / "photo.tif"}, {});
+    ASSERT_TRUE(result.ortho.has_value());
+    const auto& p = result.ortho->picture;
+    std::size_t opaque = 0;
+    int brightest = 0;
+    for (std::size_t i = 0; i < p.bytes.size(); i += 4) {
+        opaque += p.bytes[i + 3] == 255;
+        brightest = std::max<int>(brightest, p.bytes[i]);
+    }
+    EXPECT_GT(opaque, p.bytes.size() / 4 * 9 / 10);
+    EXPECT_GT(brightest, 240);
+    EXPECT_NEAR(result.frame.origin_easting_m + result.ortho->west_m, 500'200.0, 1e-6);
 }
 
 TEST(Samples, TheCalderaMeetsThePublishedFiguresWithinOnePercent) {
@@ -311,6 +454,22 @@ TEST(RealData, LakesAreFoundAtTheirSeedsWithTheirLevels) {
             << lake.files[0] << " " << lake.level;
         EXPECT_EQ(only(result).bed, Bed::unknown) << lake.files[0];
     }
+}
+
+TEST(RealData, ALevelTypedFromItsRoundedFigureAndFoundInATopobathyIsTheLake) {
+    TARN_NEEDS_DATA("thirlmere/thirlmere_eudem.tif");
+    TARN_NEEDS_DATA("rotoma/rotoma_topobathy_32m.tif");
+    // The file holds 179.6513 m; people read, and type, 179.65.
+    const auto typed =
+        dem::import_dem({.dems = {data("thirlmere/thirlmere_eudem.tif")}, .level_m = 179.65}, {});
+    EXPECT_NEAR(only(typed).area_m2, 3.29e6, 0.03e6);
+    const auto found = dem::import_dem({.dems = {data("thirlmere/thirlmere_eudem.tif")}}, {});
+    EXPECT_NEAR(only(found).area_m2, 3.29e6, 0.03e6);
+    // A few flat nodes by the shore give the level; the bed below them is the lake's.
+    const auto bed = dem::import_dem(
+        {.dems = {data("rotoma/rotoma_topobathy_32m.tif")}, .at = GeoPoint{-38.05, 176.58}}, {});
+    EXPECT_NEAR(only(bed).area_m2, 11.14e6, 0.02e6);
+    EXPECT_EQ(only(bed).bed, Bed::measured);
 }
 
 TEST(RealData, AZipWithoutCrsIsRefusedAndTakenWithOne) {

@@ -163,6 +163,13 @@ TEST(SceneFolder, IsReplacedAsAWholeOrNotAtAll) {
     std::ofstream(temp / "mine/thesis.txt") << "precious";
     EXPECT_THROW(scene_files::StagedFolder(temp / "mine"), Error);
     EXPECT_EQ(test_support::read_file(temp / "mine/thesis.txt"), "precious");
+    // A scene with something of the user's in it, and a project that has a scene.json of its own.
+    std::ofstream(temp / "scene/notes.txt") << "precious";
+    EXPECT_THROW(scene_files::StagedFolder(temp / "scene"), Error);
+    fs::remove(temp / "scene/notes.txt");
+    std::ofstream(temp / "mine/scene.json") << "{}";
+    EXPECT_THROW(scene_files::StagedFolder(temp / "mine"), Error);
+    EXPECT_EQ(test_support::read_file(temp / "mine/thesis.txt"), "precious");
     std::ofstream(temp / "file") << "x";
     EXPECT_THROW(scene_files::StagedFolder(temp / "file"), Error);
     // What a killed import of the same name left behind goes with the next one.
