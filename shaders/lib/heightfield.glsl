@@ -129,8 +129,10 @@ bool trace_field(sampler2D heights, sampler2D maxima, Field field, Ray ray, floa
 
     ivec2 ahead = ivec2(greaterThan(d, vec2(0.0))); // 1 where the far border is the upper one
     ivec2 stride = 2 * ahead - 1;
-    int level = field.root;
-    ivec2 block = ivec2(0);
+    // Blocks of 64 cells to begin with: most rays would only descend through the larger ones. Those
+    // that fly far climb to them by themselves.
+    int level = min(field.root, 3);
+    ivec2 block = clamp(ivec2(floor(o + t * d)) + ray.base, ivec2(0), field.cells - 1) >> (2 * level);
     bool near_water = false; // is there any water in the block of 4 x 4 cells
 
     for (int i = 0; i < field.step_limit; ++i) {
