@@ -2,8 +2,9 @@
 #include "app/command.hpp"
 #include "app/report.hpp"
 #include "scene_files/scene_folder.hpp"
-#include "scene_files/scene_json.hpp"
 
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <memory>
 
@@ -23,9 +24,11 @@ void add_info(CLI::App& app, Run& run) {
     c->callback([words, &run] {
         run = [words] {
             const scene::Scene scene = scene_files::load(words->scene);
-            std::cout << (words->json ? scene_files::to_json(
-                                            scene, {.ortho = scene.ortho ? "ortho.tif" : ""})
-                                      : full_report(scene));
+            if (words->json) // checked by load(), printed as it is
+                std::cout
+                    << std::ifstream(std::filesystem::path(words->scene) / "scene.json").rdbuf();
+            else
+                std::cout << full_report(scene);
             return 0;
         };
     });

@@ -98,6 +98,9 @@ int run_render(Words& words) {
         if (!folder.empty() && !std::filesystem::is_directory(folder))
             throw Error(folder.string() + ": no such folder", "create it first");
     }
+    if (!words.against.empty() && !std::filesystem::exists(words.against))
+        throw Error("--against " + words.against + ": no such file",
+                    "render it first, with --reference");
     scene::Scene scene = scene_files::load(words.scene);
     const scene::View view = make_view(words.view, scene);
     const Progress progress = console_progress();

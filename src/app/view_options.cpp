@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <map>
@@ -170,7 +171,7 @@ void apply_settings_file(CLI::App& c, const ViewWords& w) {
     if (w.settings_file.empty())
         return;
     std::ifstream in(w.settings_file);
-    if (!in)
+    if (!in || !std::filesystem::is_regular_file(w.settings_file))
         throw Error(w.settings_file + ": cannot be read", "check the path given with --settings");
     try {
         CLI::ConfigTOML format;

@@ -269,7 +269,11 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress) 
 
     if (options.bathymetry) {
         progress.report(0.7, "merging the bathymetry");
-        auto surveys = open_sources(*options.bathymetry, {.crs = "", .nodata = {}});
+        auto surveys = open_sources(
+            *options.bathymetry,
+            {.crs = "",
+             .nodata = {},
+             .crs_hint = "set it in the file, for example with gdal_edit.py -a_srs EPSG:..."});
         Grid<float> survey(mosaic.elevation_m.size, std::numeric_limits<float>::quiet_NaN());
         for (Source& part : surveys) { // a zip may hold several; the last one counts, as with tiles
             part.input.role = "bathymetry";

@@ -85,10 +85,16 @@ std::vector<std::string> expand(const fs::path& path) {
         throw Error(path.filename().string() + ": holds no raster that GDAL can read",
                     "unpack it and name the files, or check the archive");
     std::sort(out.begin(), out.end());
+    // Archives often hold a picture to look at beside the data.
+    const auto is_look = [](const std::string& name) {
+        return name.ends_with(".png") || name.ends_with(".jpg") || name.ends_with(".jpeg");
+    };
+    if (!std::all_of(out.begin(), out.end(), is_look))
+        std::erase_if(out, is_look);
     return out;
 }
 
-Source open_one(const std::string& path, const std::string& crs, bool needs_crs) {
+Source open_one(const std::string& path, const std::string& crs, const std::string& crs_hint) {
     register_drivers();
     Source source;
     source.name = fs::path(path).filename().string();
@@ -116,13 +122,12 @@ Source open_one(const std::string& path, const std::string& crs, bool needs_crs)
         source.crs = *declared;
     }
     source.crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    if (needs_crs && source.crs.IsEmpty())
-        throw Error(source.name + ": no CRS", "give one with --crs EPSG:...");
-    if (source.crs.IsLocal() ||
-        (needs_crs && !source.crs.IsProjected() && !source.crs.IsGeographic()))
+    if (source.crs.IsEmpty())
+        throw Error(source.name + ": no CRS", crs_hint);
+    if (source.crs.IsLocal() || (!source.crs.IsProjected() && !source.crs.IsGeographic()))
         throw Error(source.name + ": its CRS '" + describe(source.crs) +
                         "' does not say where on Earth it is",
-                    "give one with --crs EPSG:...");
+                    crs_hint);
     if (ds.GetGeoTransform(source.transform.v) != CE_None)
         throw Error(source.name + ": no georeference (no geotransform)",
                     "georeference it, for example with gdal_translate -a_ullr");
@@ -298,7 +303,7 @@ std::vector<Source> open_sources(const fs::path& path, const SourceOptions& opti
     register_drivers();
     std::vector<Source> out;
     for (const std::string& member : expand(path)) {
-        out.push_back(open_one(member, options.crs, options.needs_crs));
+        out.push_back(open_one(member, options.crs, options.crs_hint));
         out.back().input.role = "dem";
         to_metres(out.back(), options.nodata);
     }
@@ -306,7 +311,8 @@ std::vector<Source> open_sources(const fs::path& path, const SourceOptions& opti
 }
 
 Source open_picture(const fs::path& path, const std::string& crs) {
-    Source source = open_one(expand(path).front(), crs, true);
+    Source source = open_one(expand(path).front(), crs,
+                             "set it in the file, for example with gdal_edit.py -a_srs EPSG:...");
     source.input.role = "ortho";
     return source;
 }

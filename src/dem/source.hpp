@@ -31,7 +31,7 @@ struct Source {
 struct SourceOptions {
     std::string crs;              ///< used for every raster instead of its own; "" keeps it
     std::optional<double> nodata; ///< used for every raster besides its own
-    bool needs_crs = true;
+    std::string crs_hint = "give one with --crs EPSG:..."; ///< what a missing CRS's message says
 };
 
 /// Opens a file, or every raster in a zip archive.

@@ -56,6 +56,8 @@ double parse_time(const std::string& iso8601, GeoPoint place) {
     const double sign = zone[0] == '-' ? -1.0 : 1.0;
     const double hours =
         std::stod(zone.substr(1, 2)) + std::stod(zone.substr(zone.size() - 2)) / 60;
+    if (hours > 15.0 || std::stoi(zone.substr(zone.size() - 2)) > 59)
+        throw refuse();
     return jd - sign * hours / 24.0;
 }
 

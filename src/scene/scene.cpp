@@ -75,6 +75,18 @@ void Scene::validate() const {
         if (!ground.codes.contains(lake.seed) || !ground.codes.contains(lake.west_north) ||
             !ground.codes.contains(lake.east_south))
             throw Error(text("lake ", lake.id, " lies outside the grid"), "import the scene again");
+        const double drawn_m = water.elevation_m(lake.seed);
+        if (water.codes[lake.seed] == no_water_code || std::abs(drawn_m - lake.level_m) > 0.01)
+            throw Error(
+                text("lake ", lake.id, " level_m is ", lake.level_m,
+                     ", but the water heights hold ",
+                     water.codes[lake.seed] == no_water_code ? "no water" : text(drawn_m, " m"),
+                     " at its seed"),
+                "import the scene again with the new --level");
+        if (lake.bed != Bed::unknown &&
+            (!lake.volume_m3 || !lake.max_depth_m || !lake.mean_depth_m))
+            throw Error(text("lake ", lake.id, " has a bed but no volume or depth"),
+                        "import the scene again");
     }
     optics.validate();
     require_range("tree_line_m", look.tree_line_m, -1e5, 1e5);

@@ -184,7 +184,8 @@ void StagedFolder::commit() {
             return;
         }
         // Some file systems cannot exchange: the old scene steps aside for a moment.
-        const fs::path aside = partial_.string() + "-old";
+        const fs::path aside = target_.parent_path() / ("." + target_.filename().string() +
+                                                        ".replaced-" + std::to_string(::getpid()));
         fs::rename(target_, aside, failed);
         if (!failed) {
             fs::rename(partial_, target_, failed);

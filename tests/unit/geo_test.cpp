@@ -150,6 +150,7 @@ TEST(Time, ReadsWhatPeopleWrite) {
                 1e-8); // solar time: 6 h ahead
     EXPECT_EQ(geo::format_time(2451545.0), "2000-01-01T12:00:00Z");
     for (const char* wrong : {"", "noon", "2000-13-01T12:00Z", "2000-01-32T12:00Z",
-                              "2000-01-01T25:00Z", "2000-01-01T12:60Z", "2000-01-01T12:00X"})
+                              "2000-01-01T25:00Z", "2000-01-01T12:60Z", "2000-01-01T12:00X",
+                              "2000-01-01T12:00+99:00", "2000-01-01T12:00+02:75"})
         EXPECT_THROW(geo::parse_time(wrong, greenwich), Error) << wrong;
 }

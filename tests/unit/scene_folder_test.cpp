@@ -24,6 +24,7 @@ scene::Scene sample() {
     s.frame.datum_shift = {
         .side = 2, .reach_m = 100, .east_m = {1, 2, 3, 4}, .north_m = {4, 3, 2, 1}};
     s.lakes[0].name = "Lake \"Ä\"";
+    s.lakes[0].bed = Bed::unknown;
     s.lakes[0].volume_m3.reset();
     s.cameras.push_back({"here", scene::look({1, 2, 30}, 10, -20, 50)});
     s.report.notes = {"a note"};
@@ -85,7 +86,7 @@ TEST(SceneJson, EveryBrokenFieldIsNamed) {
         {"\"spacing_m\": 31.25", "\"spacing_m\": 0", "grid.spacing_m is 0"},
         {"\"spacing_m\": 31.25", "\"spacing_m\": 1e999", "JSON"},
         {"\"level_m\": 10.0", "\"level\": 10.0", "lakes[0].level_m is missing"},
-        {"\"bed\": \"measured\"", "\"bed\": \"mud\"", "bed is 'mud'"},
+        {"\"bed\": \"unknown\"", "\"bed\": \"mud\"", "bed is 'mud'"},
         {"\"file\": \"ground.tif\"", "\"file\": \"../../etc/passwd\"",
          "ground.file is '../../etc/passwd'"},
         {"\"file\": \"ground.tif\"", "\"file\": \"/etc/passwd\"", "no plain file name"},
@@ -137,6 +138,13 @@ TEST(SceneFolder, LoadsWhatWasWrittenAndRefusesDamage) {
     EXPECT_EQ(says(), "no error");
     dem::write_heightfield(temp / "scene/water.tif", scene::bowl(17).water, a.frame, "water", true);
     EXPECT_NE(says().find("is 17 x 17, scene.json says 33 x 33"), std::string::npos) << says();
+    // A level edited by hand that the water heights do not hold.
+    write_scene(a, temp / "scene");
+    const std::string json = test_support::read_file(temp / "scene/scene.json");
+    std::ofstream(temp / "scene/scene.json")
+        << replaced(json, "\"level_m\": 10.0", "\"level_m\": 12.0");
+    EXPECT_NE(says().find("level_m is 12, but the water heights hold 10"), std::string::npos)
+        << says();
     EXPECT_THROW(scene_files::load(temp / "nowhere"), Error);
     EXPECT_THROW(scene_files::load(temp.path()), Error);
 }
