@@ -1,4 +1,5 @@
-// tarn_make_samples FOLDER — writes the sample elevation models that the README's tour uses.
+// tarn_make_samples FOLDER [caldera|bowl] — writes the sample elevation models that the README's
+// tour uses.
 #include "caldera.hpp"
 #include "core/error.hpp"
 #include "dem/write.hpp"
@@ -6,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <string>
 
 namespace {
 
@@ -28,23 +30,28 @@ void write_bowl(const std::filesystem::path& path) {
 } // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 2) {
-        std::cerr << "usage: tarn_make_samples FOLDER\n";
+    const std::string which = argc == 3 ? argv[2] : "";
+    if (argc < 2 || argc > 3 || (argc == 3 && which != "caldera" && which != "bowl")) {
+        std::cerr << "usage: tarn_make_samples FOLDER [caldera|bowl]\n";
         return 2;
     }
     try {
         const std::filesystem::path folder = argv[1];
         std::filesystem::create_directories(folder);
-        const auto c = tarn::samples::make_caldera(25.0);
-        const double transform[6] = {c.west_m, c.spacing_m, 0.0, c.north_m, 0.0, -c.spacing_m};
-        tarn::dem::write_elevations(
-            folder / "caldera.tif", c.elevation_m, "EPSG:32610", transform,
-            "Crater Lake, Oregon: RECONSTRUCTION from published figures, not a survey");
-        write_bowl(folder / "bowl.tif");
-        std::cout << "wrote " << (folder / "caldera.tif").string() << ": level "
-                  << tarn::samples::caldera_level_m << " m, " << c.area_m2 / 1e6 << " km2, "
-                  << c.volume_m3 / 1e9 << " km3, greatest depth " << c.max_depth_m << " m\n"
-                  << "wrote " << (folder / "bowl.tif").string() << "\n";
+        if (which != "bowl") {
+            const auto c = tarn::samples::make_caldera(25.0);
+            const double transform[6] = {c.west_m, c.spacing_m, 0.0, c.north_m, 0.0, -c.spacing_m};
+            tarn::dem::write_elevations(
+                folder / "caldera.tif", c.elevation_m, "EPSG:32610", transform,
+                "Crater Lake, Oregon: RECONSTRUCTION from published figures, not a survey");
+            std::cout << "wrote " << (folder / "caldera.tif").string() << ": level "
+                      << tarn::samples::caldera_level_m << " m, " << c.area_m2 / 1e6 << " km2, "
+                      << c.volume_m3 / 1e9 << " km3, greatest depth " << c.max_depth_m << " m\n";
+        }
+        if (which != "caldera") {
+            write_bowl(folder / "bowl.tif");
+            std::cout << "wrote " << (folder / "bowl.tif").string() << "\n";
+        }
         return 0;
     } catch (const std::exception& error) {
         std::cerr << "tarn_make_samples: " << error.what() << "\n";

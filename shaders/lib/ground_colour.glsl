@@ -25,7 +25,9 @@ vec3 ground_albedo(vec2 place_m, float height_m, bool bed, float near_water, flo
         vec3 stone = vec3(0.17, 0.165, 0.145) * (0.7 + 0.6 * fine);
         vec3 colour = mix(sand, silt, smoothstep(1.5, 18.0, depth + 10.0 * (broad - 0.5)));
         colour = mix(colour, stone, smoothstep(0.40, 0.75, slope + 0.5 * (fine - 0.5) + 0.3 * (grain - 0.5)));
-        return colour * (1.0 + 0.9 * (grain - 0.5));
+        // Stones and weed: patches of some metres, grain of some decimetres.
+        float pebbles = faded_noise(place_m, 1.3, footprint_m, 31u);
+        return colour * (0.3 + 0.7 * smoothstep(0.30, 0.60, grain)) * (0.6 + 0.8 * pebbles);
     }
     vec3 meadow = vec3(0.082, 0.104, 0.036) * (0.75 + 0.5 * fine);
     vec3 forest = vec3(0.026, 0.043, 0.018) * (0.65 + 0.7 * fine);

@@ -34,7 +34,8 @@ glm::dvec3 ground_albedo(glm::dvec2 place_m, double height_m, bool bed, double n
              step(1.5, 18.0, 10.0 * (broad - 0.5) + std::max(-height_m, 0.0)));
         coat(colour, mottled(0.17, 0.165, 0.145, 0.3),
              step(0.40, 0.75, slope + 0.5 * (fine - 0.5) + 0.3 * (grain - 0.5)));
-        return colour * (0.55 + 0.9 * grain);
+        const double pebbles = faded_noise(place_m, 1.3, footprint_m, 31);
+        return colour * (0.3 + 0.7 * step(0.30, 0.60, grain)) * (0.6 + 0.8 * pebbles);
     }
     const double jitter = broad - 0.5, tone = 0.75 + 0.5 * grain;
     const double above_trees = step(tree_m - 160.0, tree_m + 160.0, height_m + 500.0 * jitter);

@@ -184,7 +184,7 @@ Camera dive(const Scene& scene, const LakeRecord& lake, glm::dvec3 sun) {
         for (int col = lake.west_north.col; col <= lake.east_south.col; ++col)
             if (is_wet(scene, lake, {col, row}))
                 deepest = std::max(deepest, lake.level_m - g.elevation_m(Node{col, row}));
-    const double wish = std::min(0.6 * reach, 0.5 * deepest);
+    const double wish = std::min(0.35 * reach, 0.5 * deepest);
     Node best = lake.seed;
     glm::dvec2 best_view(0, 1);
     double best_score = -1e9;

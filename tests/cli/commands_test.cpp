@@ -25,7 +25,7 @@ struct Shared {
     std::string dem, scene;
     Shared() : dem((folder / "bowl.tif").string()), scene((folder / "bowl").string()) {
         EXPECT_EQ(std::system((std::string(TARN_SAMPLES_PROGRAM) + " " + folder.path().string() +
-                               " >/dev/null")
+                               " bowl >/dev/null")
                                   .c_str()),
                   0);
         const Outcome made = run("tarn import " + dem + " --level 10 --name Bowl -o " + scene);
