@@ -389,3 +389,23 @@ TEST(Install, RunsFromWhereItIsInstalled) {
                   .code,
               0);
 }
+
+TEST(Install, TheDebianPackageHoldsAProgramThatRuns) {
+    const TempFolder t;
+    const fs::path build = fs::path(TARN_PROGRAM).parent_path().parent_path();
+    const Outcome packed =
+        run("sh -c 'cd " + build.string() + " && cpack -B " + (t / "packages").string() + "'");
+    ASSERT_EQ(packed.code, 0) << packed.out << packed.err;
+    const std::string deb = (t / "packages/tarn_0.1.0_amd64.deb").string();
+    ASSERT_TRUE(fs::exists(deb)) << packed.out;
+    // Its libraries are named, so that apt brings them.
+    const Outcome fields = run("dpkg-deb -f " + deb + " Depends");
+    for (const char* library :
+         {"libgdal", "libopenimageio", "libegl1", "libopengl0", "fonts-dejavu-core"})
+        EXPECT_NE(fields.out.find(library), std::string::npos) << fields.out;
+    ASSERT_EQ(run("dpkg-deb -x " + deb + " " + (t / "root").string()).code, 0);
+    const Outcome doctor = run((t / "root/usr/bin/tarn").string() + " doctor --json");
+    EXPECT_EQ(doctor.code, 0) << doctor.err;
+    EXPECT_EQ(nlohmann::json::parse(doctor.out).at("shaders").get<std::string>(),
+              (t / "root/usr/share/tarn/shaders").string());
+}
