@@ -7,6 +7,7 @@
 /// and its area; land is interpolated by cubics, held above the water beside it.
 #include "core/grid.hpp"
 #include "core/progress.hpp"
+#include "dem/crs.hpp"
 #include "dem/source.hpp"
 #include "geo/frame_data.hpp"
 
@@ -43,18 +44,5 @@ Mosaic build_mosaic(std::vector<Source>& sources, const MosaicOptions& options,
 
 /// Brings one more raster onto an existing mosaic's grid (bilinear, NaN outside).
 Grid<float> onto_grid(Source& source, const Mosaic& mosaic, const std::string& resampling);
-
-/// The frame of a transverse Mercator CRS in metres; nothing if `crs` is something else.
-/// The origin stays (0, 0); datum_shift is fitted later, over the scene.
-std::optional<geo::Frame> transverse_mercator(const OGRSpatialReference& crs);
-
-/// Asks PROJ how the frame's datum differs from WGS 84 over a square of half side `reach_m`
-/// around scene (0, 0), and stores it. Returns the greatest error [m] found between the lattice's
-/// places.
-double sample_datum_shift(geo::Frame& frame, const OGRSpatialReference& crs, double reach_m);
-
-/// GDAL's affine of a grid whose pixel CENTRES are the mosaic's nodes.
-GeoTransform geo_transform(const geo::Frame& frame, double west_m, double north_m,
-                           double spacing_m);
 
 } // namespace tarn::dem
