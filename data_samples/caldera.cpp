@@ -60,12 +60,13 @@ double rim_m(double angle) {
         {285, 2420, 10}, // Applegate Peak, Dutton Cliff side
         {340, 2330, 14}, // above Kerr Notch's northern side
     };
-    double height = 2135.0;
+    // Joined by a fourth-power mean: the greater one rules, without a crease where two are equal.
+    double sum = 0.0;
     for (const Peak& peak : peaks) {
-        double off = std::remainder(angle * 180.0 / pi - peak.at_deg, 360.0) / peak.width_deg;
-        height = std::max(height, 2135.0 + (peak.height_m - 2135.0) * std::exp(-0.5 * off * off));
+        const double off = std::remainder(angle * 180.0 / pi - peak.at_deg, 360.0) / peak.width_deg;
+        sum += std::pow((peak.height_m - 2135.0) * std::exp(-0.5 * off * off), 4.0);
     }
-    return height;
+    return 2135.0 + std::pow(sum, 0.25);
 }
 
 struct Shape {
@@ -110,8 +111,10 @@ double elevation(double x, double y, const Shape& shape) {
     const double wizard = std::hypot(x + 3050.0, y + 650.0);
     const double coast =
         638.0 * (1.0 + 0.12 * std::cos(3.0 * std::atan2(y + 650.0, x + 3050.0) + 1.0));
+    const double off_coast = std::max(0.0, wizard - coast);
     const double apron =
-        caldera_level_m + 16.0 * (1.0 - std::pow(wizard / coast, 2.0)) +
+        caldera_level_m + 16.0 * (1.0 - std::pow(std::min(wizard / coast, 1.0), 2.0)) -
+        0.05 * off_coast - 0.45 * off_coast * off_coast / (off_coast + 150.0) +
         5.0 * rough(x, y, 260.0, 4, 33u) * std::clamp(1.0 - wizard / coast, 0.0, 1.0);
     const double crater = 27.0 * std::exp(-std::pow(wizard / 60.0, 2.0));
     const double cone = 2113.0 - 0.60 * std::max(0.0, wizard - 95.0) - crater;
