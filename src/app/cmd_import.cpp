@@ -1,6 +1,7 @@
 // `tarn import` — options, help text and body in one screen; the work itself is in dem/.
 #include "app/command.hpp"
 #include "app/console.hpp"
+#include "app/dem_options.hpp"
 #include "app/preview.hpp"
 #include "app/report.hpp"
 #include "app/view_options.hpp"
@@ -23,25 +24,21 @@ namespace tarn::app {
 namespace {
 
 struct Words {
-    dem::ImportOptions options;
-    std::vector<std::string> dems;
-    std::string level = "auto", at, bounds, bathymetry, ortho, scene;
+    DemWords dem;
+    std::string level = "auto", lakes = "all", bathymetry, soundings, ortho, scene;
     std::string bathymetry_kind = "auto", bed = "auto";
 };
 
-int run_import(Words& words) {
-    dem::ImportOptions& options = words.options;
-    options.dems.assign(words.dems.begin(), words.dems.end());
+void read_words(Words& words) {
+    read_dem_words(words.dem);
+    dem::ImportOptions& options = words.dem.options;
     if (words.level != "auto")
         options.level_m = parse_numbers("--level", words.level, 1)[0];
-    if (!words.at.empty())
-        options.at = parse_place("--at", words.at);
-    if (!words.bounds.empty()) {
-        const auto v = parse_numbers("--bounds", words.bounds, 4);
-        options.bounds = dem::Bounds{v[0], v[1], v[2], v[3]};
-    }
+    options.lakes = words.lakes == "one" ? dem::LakeChoice::one : dem::LakeChoice::all;
     if (!words.bathymetry.empty())
         options.bathymetry = words.bathymetry;
+    if (!words.soundings.empty())
+        options.soundings = words.soundings;
     if (!words.ortho.empty())
         options.ortho = words.ortho;
     options.bathymetry_kind = words.bathymetry_kind == "elevation" ? dem::BathymetryKind::elevation
@@ -51,10 +48,20 @@ int run_import(Words& words) {
                   : words.bed == "unknown" ? dem::BedChoice::unknown
                                            : dem::BedChoice::automatic;
     options.validate();
+}
+
+int run_import(Words& words) {
+    read_words(words);
+    dem::ImportOptions& options = words.dem.options;
     scene_files::StagedFolder folder(words.scene); // refuses before any work is done
 
     const Progress progress = console_progress();
-    dem::ImportResult result = dem::import_dem(options, progress);
+    scene_files::FileNames files;
+    dem::ImportResult result = dem::import_dem(
+        options, progress,
+        [&](const Grid<float>& heights_m, const Heightfield& place, const geo::Frame& frame) {
+            dem::write_heights(folder.path() / files.heights, heights_m, place, frame);
+        });
     scene::Scene scene;
     scene.frame = result.frame;
     scene.ground = std::move(result.ground);
@@ -73,7 +80,6 @@ int run_import(Words& words) {
     scene.validate();
 
     progress.report(0.95, "writing");
-    scene_files::FileNames files;
     dem::write_heightfield(folder.path() / files.ground, scene.ground, scene.frame, "ground",
                            false);
     dem::write_heightfield(folder.path() / files.water, scene.water, scene.frame, "water level",
@@ -95,40 +101,48 @@ int run_import(Words& words) {
 
 void add_import(CLI::App& app, Run& run) {
     auto words = std::make_shared<Words>();
-    dem::ImportOptions& options = words->options;
+    dem::ImportOptions& options = words->dem.options;
     CLI::App* c = app.add_subcommand("import", "elevation tiles + water level -> scene folder");
-    c->add_option("DEM", words->dems,
-                  "elevation rasters (GeoTIFF, .hgt, .asc, .zip: what GDAL reads)")
-        ->required();
+    add_dem_options(*c, words->dem);
     c->add_option("-o,--output", words->scene, "scene folder to write")->required();
     c->add_option(
          "--level", words->level,
          "water level [m] in the DEM's vertical datum, or auto: the flat water surface found")
         ->capture_default_str();
-    c->add_option("--at", words->at, "LAT,LON of a point in the lake; default: the largest lake");
-    c->add_option("--radius", options.radius_km, "cut the scene to this many km around --at");
-    c->add_option("--bounds", words->bounds,
-                  "cut the scene to WEST,SOUTH,EAST,NORTH [deg, WGS 84]");
+    c->add_option("--lakes", words->lakes,
+                  "all: other water surfaces stand at their own levels; one: only the lake asked "
+                  "for")
+        ->check(CLI::IsMember({"all", "one"}))
+        ->capture_default_str();
     c->add_option("--bathymetry", words->bathymetry,
                   "raster of the lake's bed: elevations or depths");
+    c->add_option("--soundings", words->soundings,
+                  "measured depths: CSV lon,lat,depth, or any points or contour lines");
+    c->add_option("--depth-field", options.depth_field,
+                  "attribute of the soundings that holds the depth; default: looked for");
     c->add_option("--bathymetry-kind", words->bathymetry_kind, "what its values are")
         ->check(CLI::IsMember({"auto", "elevation", "depth"}))
         ->capture_default_str();
+    c->add_option("--bathymetry-crs,--soundings-crs", options.bathymetry_crs,
+                  "CRS of bathymetry or soundings instead of their own");
+    c->add_option("--bathymetry-offset", options.bathymetry_offset_m,
+                  "added to its elevations [m]: from its vertical datum to the DEM's")
+        ->capture_default_str();
+    c->add_option("--bathymetry-level", options.bathymetry_level_m,
+                  "level [m] that its depths count from; default: the DEM's water surface");
+    c->add_option("--estimate-depth", options.estimate_depth_m,
+                  "greatest depth [m]: makes up a bed from the distance to the shore");
     c->add_option("--bed", words->bed,
                   "whether the DEM itself holds the bed; auto: not if it is flat")
         ->check(CLI::IsMember({"auto", "measured", "unknown"}))
         ->capture_default_str();
     c->add_option("--ortho", words->ortho, "aerial picture to drape over the land");
-    c->add_option("--spacing", options.spacing_m,
-                  "distance between nodes [m]; default: loses nothing");
-    c->add_option("--crs", options.crs, "CRS of the DEMs instead of their own, e.g. EPSG:27700");
-    c->add_option("--nodata", options.nodata,
-                  "value that means no data, besides what the files declare");
     c->add_option("--name", options.name, "name of the lake");
     c->footer(
         "Examples:\n"
         "  tarn import rotoma.tif --level 313.31 -o rotoma\n"
         "  tarn import N43E006.hgt N43E007.hgt.zip --at 43.766,6.184 -o sainte-croix\n"
+        "  tarn import dem.tif --soundings depths.csv -o lake\n"
         "  tarn import tiles/*.asc --crs EPSG:27700 --level 60 --at 51.83,-2.72 --radius 2 -o usk");
     c->callback([words, &run] { run = [words] { return run_import(*words); }; });
 }

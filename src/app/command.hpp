@@ -11,7 +11,9 @@ using Run = std::function<int()>;
 
 /// Each adds one subcommand with its options, help and examples. The options live as long as `run`.
 void add_import(CLI::App& app, Run& run);
+void add_detect(CLI::App& app, Run& run);
 void add_info(CLI::App& app, Run& run);
+void add_stats(CLI::App& app, Run& run);
 void add_render(CLI::App& app, Run& run);
 void add_doctor(CLI::App& app, Run& run);
 

@@ -44,7 +44,9 @@ int main(int argc, char** argv) {
                "             tarn render lake -o lake.png");
     app::Run run;
     app::add_import(cli, run);
+    app::add_detect(cli, run);
     app::add_info(cli, run);
+    app::add_stats(cli, run);
     app::add_render(cli, run);
     app::add_doctor(cli, run);
     try {

@@ -29,7 +29,7 @@ double Heightfield::max_elevation_m() const {
 }
 
 Heightfield quantise(std::span<const float> elevations_m, GridSize size, double spacing_m,
-                     int spare_codes, std::optional<double> include_m) {
+                     int spare_codes, std::span<const double> include_m) {
     if (size.cols < 2 || size.rows < 2)
         throw Error(text("grid is ", size.cols, " x ", size.rows, ", need at least 2 x 2"));
     if (!(spacing_m > 0.0)) // also rejects NaN
@@ -44,8 +44,11 @@ Heightfield quantise(std::span<const float> elevations_m, GridSize size, double 
                         "fill or mask no-data cells before quantising");
 
     const auto [least, greatest] = std::minmax_element(elevations_m.begin(), elevations_m.end());
-    const double low = std::min(double(*least), include_m.value_or(*least));
-    const double high = std::max(double(*greatest), include_m.value_or(*greatest));
+    double low = *least, high = *greatest;
+    for (const double height : include_m) {
+        low = std::min(low, height);
+        high = std::max(high, height);
+    }
     Heightfield field;
     field.codes = Grid<std::uint16_t>(size);
     field.spacing_m = spacing_m;

@@ -13,7 +13,6 @@
 #include "core/grid.hpp"
 
 #include <cstdint>
-#include <optional>
 #include <span>
 
 namespace tarn {
@@ -51,10 +50,10 @@ inline constexpr std::uint16_t no_water_code = 0;
 /// @param size          both sides >= 2
 /// @param spare_codes   codes left unused at either end, so that a node can still be moved just
 ///                      below the lowest or above the highest elevation, [0, 1000]
-/// @param include_m     a height that the codes must reach too, a water level say
+/// @param include_m     heights that the codes must reach too, water levels say
 /// @return  a grid whose elevation_m() differs from the input by at most scale_m / 2
 /// @throws  tarn::Error  if an argument breaks these rules, or naming the node that is not finite
 Heightfield quantise(std::span<const float> elevations_m, GridSize size, double spacing_m,
-                     int spare_codes = 0, std::optional<double> include_m = {});
+                     int spare_codes = 0, std::span<const double> include_m = {});
 
 } // namespace tarn

@@ -5,74 +5,97 @@
 
 #include <algorithm>
 #include <cmath>
+#include <queue>
 
 namespace tarn::dem {
 
-namespace {
-
-/// Collects the region of `from`, marking it in `mark`; returns whether it touches an edge.
-bool flood(const Grid<float>& z, const Grid<unsigned char>& outside, double level_m, double floor_m,
-           Node from, Grid<unsigned char>& mark, std::vector<Node>& members) {
-    bool open = false;
-    members.assign(1, from);
-    mark[from] = 1;
-    for (std::size_t i = 0; i < members.size(); ++i) {
-        const Node at = members[i];
-        for (int dr = -1; dr <= 1; ++dr)
-            for (int dc = -1; dc <= 1; ++dc) {
-                const Node n{at.col + dc, at.row + dr};
-                if (!z.contains(n) || outside[n]) {
-                    open = true;
-                } else if (!mark[n] && at_or_below(z[n], level_m) && double(z[n]) >= floor_m) {
-                    mark[n] = 1;
-                    members.push_back(n);
-                }
-            }
+Filled fill_from(const Grid<float>& z, const Marks& marks, float highest_wet_m,
+                 std::span<const Node> seeds, int id, LakeOf& lake_of, double floor_m) {
+    Filled out;
+    std::vector<Node> front;
+    for (const Node seed : seeds) {
+        if (!z.contains(seed) || (marks[seed] & mark::outside))
+            throw Error("the seed lies outside the elevation data", "move it with --at LAT,LON");
+        if (!(z[seed] <= highest_wet_m))
+            throw Error(text("the seed lies at ", fixed(z[seed], 2), " m, above the level of ",
+                             fixed(double(highest_wet_m), 2), " m"),
+                        "move it into the lake with --at LAT,LON, or raise --level");
+        if (lake_of[seed] == 0) {
+            lake_of[seed] = static_cast<std::uint16_t>(id);
+            front.push_back(seed);
+            ++out.nodes;
+            out.at_level += z[seed] == highest_wet_m;
+        }
     }
-    return open;
+    search<8>(
+        z.size, std::move(front),
+        [&](Node n) {
+            if (marks[n] & mark::outside) {
+                out.open_at_edge = true;
+                return false;
+            }
+            if (lake_of[n] != 0 || !(z[n] <= highest_wet_m) || double(z[n]) < floor_m)
+                return false;
+            lake_of[n] = static_cast<std::uint16_t>(id);
+            ++out.nodes;
+            out.at_level += z[n] == highest_wet_m;
+            return true;
+        },
+        [&](Node) { out.open_at_edge = true; });
+    return out;
 }
 
-} // namespace
-
-Grid<unsigned char> fill_from(const Grid<float>& z, const Grid<unsigned char>& outside,
-                              double level_m, Node seed, bool* open_at_edge, double floor_m) {
-    if (!z.contains(seed) || outside[seed])
-        throw Error("the seed lies outside the elevation data", "move it with --at LAT,LON");
-    if (!at_or_below(z[seed], level_m))
-        throw Error(text("the seed lies at ", fixed(z[seed], 2), " m, above the level of ",
-                         fixed(level_m, 2), " m"),
-                    "move it into the lake with --at LAT,LON, or raise --level");
-    Grid<unsigned char> wet(z.size);
-    std::vector<Node> members;
-    const bool open = flood(z, outside, level_m, floor_m, seed, wet, members);
-    if (open_at_edge)
-        *open_at_edge = open;
-    return wet;
+void drain(LakeOf& lake_of, std::span<const Node> seeds) {
+    for (const Node seed : seeds) {
+        const std::uint16_t id = lake_of[seed];
+        if (id == 0)
+            continue;
+        lake_of[seed] = 0;
+        search<8>(
+            lake_of.size, {seed},
+            [&](Node n) {
+                if (lake_of[n] != id)
+                    return false;
+                lake_of[n] = 0;
+                return true;
+            },
+            [](Node) {});
+    }
 }
 
-std::vector<Basin> find_basins(const Grid<float>& z, const Grid<unsigned char>& outside,
-                               double level_m) {
+std::vector<Basin> find_basins(const Grid<float>& z, Marks& marks, float highest_wet_m) {
     std::vector<Basin> out;
-    Grid<unsigned char> mark(z.size);
-    std::vector<Node> members;
     for (int row = 0; row < z.size.rows; ++row)
         for (int col = 0; col < z.size.cols; ++col) {
             const Node start{col, row};
-            if (mark[start] || outside[start] || !at_or_below(z[start], level_m))
+            if ((marks[start] & (mark::seen | mark::outside)) || !(z[start] <= highest_wet_m))
                 continue;
             Basin basin;
-            basin.open_at_edge = flood(z, outside, level_m, -1e30, start, mark, members);
-            basin.nodes = members.size();
             basin.seed = start;
-            for (const Node n : members) {
-                basin.at_level += std::abs(double(z[n]) - level_m) <= 0.5;
+            const auto take = [&](Node n) {
+                marks[n] |= mark::seen;
+                ++basin.nodes;
+                basin.at_level += std::abs(z[n] - highest_wet_m) <= 0.5f;
                 if (z[n] < z[basin.seed])
                     basin.seed = n;
-            }
+            };
+            take(start);
+            search<8>(
+                z.size, {start},
+                [&](Node n) {
+                    if (marks[n] & mark::outside)
+                        basin.open_at_edge = true;
+                    if ((marks[n] & (mark::seen | mark::outside)) || !(z[n] <= highest_wet_m))
+                        return false;
+                    take(n);
+                    return true;
+                },
+                [&](Node) { basin.open_at_edge = true; });
             out.push_back(basin);
         }
-    std::sort(out.begin(), out.end(),
-              [](const Basin& a, const Basin& b) { return a.nodes > b.nodes; });
+    clear(marks, mark::seen);
+    std::stable_sort(out.begin(), out.end(),
+                     [](const Basin& a, const Basin& b) { return a.nodes > b.nodes; });
     return out;
 }
 
@@ -85,21 +108,97 @@ std::optional<Basin> largest_lake(const std::vector<Basin>& basins) {
     return {};
 }
 
-std::optional<Node> nearest_wet(const Grid<float>& z, const Grid<unsigned char>& outside,
-                                double level_m, Node from, int reach) {
+std::optional<Node> nearest_wet(const Grid<float>& z, const Marks& marks, float highest_wet_m, Node from,
+                                int reach) {
     std::optional<Node> best;
     long best_squared = long(reach) * reach + 1;
     for (int dr = -reach; dr <= reach; ++dr)
         for (int dc = -reach; dc <= reach; ++dc) {
             const Node n{from.col + dc, from.row + dr};
             const long squared = long(dc) * dc + long(dr) * dr;
-            if (squared < best_squared && z.contains(n) && !outside[n] &&
-                at_or_below(z[n], level_m)) {
+            if (squared < best_squared && z.contains(n) && !(marks[n] & mark::outside) &&
+                z[n] <= highest_wet_m) {
                 best_squared = squared;
                 best = n;
             }
         }
     return best;
+}
+
+namespace {
+
+struct Step {
+    float elevation_m;
+    Node at;
+    bool operator<(const Step& other) const { return elevation_m > other.elevation_m; }
+};
+
+/// @param touched  nodes marked as seen so far; all marks are taken off again at the end
+std::optional<Spill> rise(const Grid<float>& z, Marks& marks, std::priority_queue<Step> rim,
+                          Spill spill, std::vector<Node> touched, double up_to_m) {
+    std::optional<Spill> out;
+    while (!rim.empty()) {
+        const Step step = rim.top();
+        rim.pop();
+        if (double(step.elevation_m) > up_to_m)
+            break;
+        if (step.elevation_m > static_cast<float>(spill.level_m)) {
+            spill.level_m = double(step.elevation_m);
+            spill.pass = step.at;
+            spill.at_surface = false;
+        }
+        const Node at = step.at;
+        bool edge = at.col == 0 || at.row == 0 || at.col + 1 == z.size.cols ||
+                    at.row + 1 == z.size.rows;
+        each_neighbour(z.size, at, [&](Node n) { edge |= (marks[n] & mark::outside) != 0; });
+        if (edge) {
+            spill.exit = at;
+            out = spill;
+            break;
+        }
+        each_neighbour(z.size, at, [&](Node n) {
+            if (!(marks[n] & mark::seen)) {
+                marks[n] |= mark::seen;
+                touched.push_back(n);
+                rim.push({z[n], n});
+            }
+        });
+    }
+    for (const Node n : touched)
+        marks[n] &= static_cast<unsigned char>(~mark::seen);
+    return out;
+}
+
+} // namespace
+
+std::optional<Spill> find_spill(const Grid<float>& z, Marks& marks, const LakeOf& lake_of, int id,
+                                double level_m) {
+    std::priority_queue<Step> rim;
+    std::vector<Node> touched;
+    Spill spill{.level_m = level_m, .pass = {}, .exit = {}, .at_surface = true};
+    for (int row = 0; row < z.size.rows; ++row)
+        for (int col = 0; col < z.size.cols; ++col) {
+            const Node at{col, row};
+            if (lake_of[at] != id)
+                continue;
+            marks[at] |= mark::seen;
+            touched.push_back(at);
+            bool shore = col == 0 || row == 0 || col + 1 == z.size.cols || row + 1 == z.size.rows;
+            each_neighbour(z.size, at, [&](Node n) { shore |= lake_of[n] != id; });
+            if (shore)
+                rim.push({std::min(z[at], static_cast<float>(level_m)), at});
+        }
+    return rise(z, marks, std::move(rim), spill, std::move(touched),
+                std::numeric_limits<double>::infinity());
+}
+
+std::optional<Spill> find_spill(const Grid<float>& z, Marks& marks, Node seed, double up_to_m) {
+    std::priority_queue<Step> rim;
+    marks[seed] |= mark::seen;
+    rim.push({z[seed], seed});
+    return rise(z, marks, std::move(rim),
+                {.level_m = double(z[seed]), .pass = seed, .exit = seed, .at_surface = true}, {seed},
+                up_to_m);
 }
 
 } // namespace tarn::dem

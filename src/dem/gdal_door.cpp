@@ -1,5 +1,9 @@
 #include "dem/gdal_door.hpp"
 
+#include "core/error.hpp"
+
+#include <cpl_conv.h>
+
 #include <mutex>
 
 namespace tarn::dem {
@@ -35,11 +39,27 @@ int CPL_STDCALL GdalProgress::callback(double fraction, const char*, void* self)
     return TRUE;
 }
 
+Dataset wrap_memory(void* data, GridSize size, GDALDataType type) {
+    register_drivers();
+    auto* driver = GetGDALDriverManager()->GetDriverByName("MEM");
+    Dataset out(driver->Create("", size.cols, size.rows, 0, type, nullptr));
+    char pointer[64] = {};
+    CPLPrintPointer(pointer, data, sizeof pointer - 1);
+    CPLStringList options;
+    options.SetNameValue("DATAPOINTER", pointer);
+    if (!out || out->AddBand(type, options.List()) != CE_None)
+        throw Error("out of memory");
+    return out;
+}
+
 void register_drivers() {
     static std::once_flag once;
     std::call_once(once, [] {
         GDALAllRegister();
         CPLSetConfigOption("GDAL_PAM_ENABLED", "NO"); // leave no .aux.xml beside users' files
+        // GDAL would keep a twentieth of all memory in blocks; streaming needs far less.
+        if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr))
+            GDALSetCacheMax64(GIntBig(192) << 20);
     });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 /// @file gdal_door.hpp  GDAL's C++ classes behind RAII, and its messages as tarn::Error.
+#include "core/grid.hpp"
 #include "core/progress.hpp"
 
 #include <cpl_error.h>
@@ -60,6 +61,10 @@ private:
     double from_, to_;
     bool cancelled_ = false;
 };
+
+/// A MEM dataset of one band over our own memory; nothing is copied.
+/// @throws tarn::Error  if GDAL has no memory for it
+Dataset wrap_memory(void* data, GridSize size, GDALDataType type);
 
 /// Registers the drivers once; safe to call often.
 void register_drivers();

@@ -4,7 +4,9 @@
 #include "core/text.hpp"
 #include "dem/fill.hpp"
 #include "dem/flat.hpp"
+#include "dem/lakes.hpp"
 #include "dem/ortho.hpp"
+#include "dem/soundings.hpp"
 #include "dem/statistics.hpp"
 #include "dem/voids.hpp"
 #include "dem/water.hpp"
@@ -12,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <limits>
 
 namespace tarn::dem {
@@ -27,6 +30,15 @@ void ImportOptions::validate() const {
     range("--level", level_m, -12'000.0, 12'000.0);
     range("--radius", radius_km, 0.01, 500.0);
     range("--spacing", spacing_m, 0.01, 100'000.0);
+    range("--min-area", min_area_km2, 0.0, 1e6);
+    range("--bathymetry-offset", bathymetry_offset_m, -12'000.0, 12'000.0);
+    range("--bathymetry-level", bathymetry_level_m, -12'000.0, 12'000.0);
+    range("--estimate-depth", estimate_depth_m, 0.01, 2000.0);
+    if (!unit.empty() && unit != "m" && unit != "ft" && unit != "us-ft")
+        throw Error("--unit '" + unit + "' is not known", "give m, ft or us-ft");
+    if (bathymetry && soundings)
+        throw Error("--bathymetry and --soundings exclude each other",
+                    "merge them before, or import with one");
     if (at && !(std::abs(at->lat_deg) <= 90.0 && std::abs(at->lon_deg) <= 360.0))
         throw Error(text("--at ", at->lat_deg, ",", at->lon_deg, " is not on Earth"),
                     "write --at LAT,LON in degrees");
@@ -69,55 +81,12 @@ std::string place(const Mosaic& mosaic, Node n) {
     return fixed(p.lat_deg, 4) + "," + fixed(p.lon_deg, 4);
 }
 
-struct Choice {
-    double level_m = 0.0;
-    Node seed;
-};
-
-/// `--level auto`: the water surface at (or nearest to) the seed, or the largest inland one.
-Choice find_level(const Mosaic& mosaic, const std::vector<FlatSurface>& flats,
-                  const Grid<unsigned char>& mask, std::optional<Node> at,
-                  std::vector<std::string>& notes) {
-    if (flats.empty())
-        throw Error("no flat water surface was found in the elevation data",
-                    "it may hold the lake's bed: give the level with --level M");
-    const auto area = [&](const FlatSurface& f) {
-        return fixed(double(f.nodes) * mosaic.spacing_m * mosaic.spacing_m / 1e6, 3) + " km2";
-    };
-    const FlatSurface* chosen = nullptr;
-    if (at) {
-        // The nearest flat node: a seed on an island or a jetty still means this lake.
-        std::optional<Node> nearest;
-        long best = 0;
-        constexpr int reach = 50;
-        for (int dr = -reach; dr <= reach; ++dr)
-            for (int dc = -reach; dc <= reach; ++dc) {
-                const Node n{at->col + dc, at->row + dr};
-                const long d = long(dr) * dr + long(dc) * dc;
-                if (mask.contains(n) && mask[n] && (!nearest || d < best)) {
-                    nearest = n;
-                    best = d;
-                }
-            }
-        if (!nearest)
-            throw Error(text("no flat water surface within ", reach, " nodes of --at"),
-                        "move it onto the lake, or give the level with --level M");
-        const double level = mosaic.elevation_m[*nearest];
-        notes.push_back(text("level ", fixed(level, 4), " m taken from the flat surface at ",
-                             place(mosaic, *nearest)));
-        return {level, *nearest};
-    }
-    for (const FlatSurface& flat : flats) // the sea: at about 0 and open at the edge
-        if (!(flat.touches_edge && std::abs(flat.level_m) <= 2.0f)) {
-            chosen = &flat;
-            break;
-        }
-    if (!chosen)
-        chosen = &flats.front();
-    notes.push_back(text("level ", fixed(chosen->level_m, 4), " m taken from the largest of ",
-                         flats.size(), " flat surfaces: ", area(*chosen), " at ",
-                         place(mosaic, chosen->deepest)));
-    return {chosen->level_m, chosen->deepest};
+/// Eight winds, for people.
+const char* compass(double dx, double dy) {
+    static const char* winds[] = {"east",  "north-east", "north",  "north-west",
+                                  "west",  "south-west", "south",  "south-east"};
+    const double turns = std::atan2(dy, dx) / (2.0 * M_PI) * 8.0;
+    return winds[std::size_t(std::lround(turns) + 8) % 8];
 }
 
 /// A level typed from a rounded figure may lie some millimetres below the water surface that it
@@ -125,21 +94,23 @@ Choice find_level(const Mosaic& mosaic, const std::vector<FlatSurface>& flats,
 double snapped(double level_m, const std::vector<FlatSurface>& flats, const Mosaic& mosaic,
                const std::optional<Node>& seed, std::vector<std::string>& notes) {
     constexpr double rounding_m = 0.005;
+    if (has_surface(flats, level_m))
+        return level_m;
     for (const FlatSurface& flat : flats) { // largest first
         const double above = double(flat.level_m) - level_m;
-        if (!(above > level_tolerance_m && above <= rounding_m) ||
+        if (!(above > 0.0 && above <= rounding_m) ||
             (seed && mosaic.elevation_m[*seed] != flat.level_m))
             continue;
         notes.push_back(text("level ", level_m, " m taken as ", fixed(flat.level_m, 4),
-                             " m, the flat water surface at ", place(mosaic, flat.deepest)));
+                             " m, the flat water surface at ", place(mosaic, flat.middle)));
         return flat.level_m;
     }
     return level_m;
 }
 
-Node largest_basin_seed(const Mosaic& mosaic, const Voids& voids, double level_m,
+Node largest_basin_seed(const Mosaic& mosaic, Marks& marks, double level_m, float highest_wet_m,
                         std::vector<std::string>& notes) {
-    const auto basins = find_basins(mosaic.elevation_m, voids.outside, level_m);
+    const auto basins = find_basins(mosaic.elevation_m, marks, highest_wet_m);
     const auto lake = largest_lake(basins);
     if (!lake)
         throw Error(text("nothing lies below the level of ", fixed(level_m, 2),
@@ -161,189 +132,575 @@ Node largest_basin_seed(const Mosaic& mosaic, const Voids& voids, double level_m
     return lake->seed;
 }
 
-} // namespace
+/// An import on its way: each step adds to what the next one needs.
+class Work {
+public:
+    Work(const ImportOptions& options, const Progress& progress)
+        : options_(options), progress_(progress) {
+        options.validate();
+    }
 
-ImportResult import_dem(const ImportOptions& options, const Progress& progress) {
-    options.validate();
-    ImportResult out;
-    ImportReport& report = out.report;
-    progress.report(0.0, "opening");
+    void open();
+    void build_grid();
+    void find_surfaces();
+    void choose_and_fill();
+    void find_all(); ///< every lake, none asked for
+    void make_beds();
+    std::vector<LakeRecord> measure_lakes();
+    void tell_spill(LakeRecord& lake);
+    ImportResult pack(std::vector<LakeRecord> lakes, const HeightsSink& keep_heights);
 
-    std::vector<Source> sources;
-    for (const auto& path : options.dems)
-        for (Source& source : open_sources(path, {.crs = options.crs, .nodata = options.nodata})) {
-            report.notes.insert(report.notes.end(), source.notes.begin(), source.notes.end());
-            report.inputs.push_back(source.input);
-            sources.push_back(std::move(source));
+    ImportReport finish_report();
+    const Mosaic& mosaic() const { return mosaic_; }
+
+private:
+    void note(const std::string& words) { report_.notes.push_back(words); }
+    void add_input(Source& source, const std::string& role);
+    std::size_t least_nodes() const;
+    LakeSearch search() {
+        return {.elevation_m = mosaic_.elevation_m,
+                .marks = marks_,
+                .lake_of = lake_of_,
+                .least_nodes = least_nodes()};
+    }
+    void fill_level(double level_m, std::optional<Node> seed);
+    void fill_found(Node at);
+    void number_lakes();
+    void make_bed(const FoundLake& lake, std::size_t& made);
+    double surface_height(const FoundLake& lake) const;
+    Surface surface() const {
+        return {mosaic_.elevation_m, mosaic_.spacing_m, mosaic_.west_m, mosaic_.north_m};
+    }
+
+    const ImportOptions& options_;
+    const Progress& progress_;
+    ImportReport report_;
+    std::vector<std::future<std::string>> checksums_; ///< of report_.inputs, in their order
+    std::vector<Source> sources_;
+    Mosaic mosaic_;
+    Marks marks_;
+    LakeOf lake_of_;
+    std::vector<FlatSurface> surfaces_;
+    std::vector<FoundLake> lakes_; ///< lakes_[i].id == i + 1
+    std::vector<double> flat_share_;
+    std::vector<Bed> beds_;
+    Boxes boxes_;
+    bool level_given_ = false;
+};
+
+void Work::add_input(Source& source, const std::string& role) {
+    source.input.role = role;
+    report_.notes.insert(report_.notes.end(), source.notes.begin(), source.notes.end());
+    report_.inputs.push_back(source.input);
+    checksums_.push_back(
+        std::async(std::launch::async, [path = source.path] { return checksum(path); }));
+}
+
+void Work::open() {
+    progress_.report(0.0, "opening");
+    std::vector<std::string> without_unit;
+    for (const auto& path : options_.dems)
+        for (Source& source : open_sources(path, {.crs = options_.crs,
+                                                  .nodata = options_.nodata,
+                                                  .unit = options_.unit})) {
+            add_input(source, "dem");
+            if (!source.unit_declared)
+                without_unit.push_back(source.name);
+            sources_.push_back(std::move(source));
         }
-    for (const Source& source : sources)
-        if (source.input.vertical != sources.front().input.vertical)
-            report.notes.push_back(
-                source.name + ": its vertical datum '" + source.input.vertical +
-                "' differs from the first tile's; heights are taken as they are");
+    if (!without_unit.empty())
+        note(text("vertical unit not declared (", without_unit.front(),
+                  without_unit.size() > 1 ? text(" and ", without_unit.size() - 1, " more") : "",
+                  "); taken as metres (--unit says otherwise)"));
+    for (const Source& source : sources_)
+        if (source.input.vertical != sources_.front().input.vertical)
+            note(source.name + ": its vertical datum '" + source.input.vertical +
+                 "' differs from the first tile's; heights are taken as they are");
+}
 
-    MosaicOptions mosaic_options{.bounds = options.bounds, .spacing_m = options.spacing_m};
-    if (options.radius_km)
-        mosaic_options.bounds = around(*options.at, *options.radius_km);
-    Mosaic mosaic = build_mosaic(sources, mosaic_options, progress);
-    mosaic.frame.vertical_datum = sources.front().input.vertical;
-    report.resampling = mosaic.resampling;
-    report.notes.insert(report.notes.end(), mosaic.notes.begin(), mosaic.notes.end());
-    report.nodes = mosaic.elevation_m.size.count();
+void Work::build_grid() {
+    MosaicOptions mosaic_options{.bounds = options_.bounds, .spacing_m = options_.spacing_m};
+    if (options_.radius_km)
+        mosaic_options.bounds = around(*options_.at, *options_.radius_km);
+    mosaic_ = build_mosaic(sources_, mosaic_options, progress_);
+    mosaic_.frame.vertical_datum = sources_.front().input.vertical;
+    report_.resampling = mosaic_.resampling;
+    report_.notes.insert(report_.notes.end(), mosaic_.notes.begin(), mosaic_.notes.end());
+    report_.nodes = mosaic_.elevation_m.size.count();
+    for (const Source& source : sources_)
+        if (source.findings->forgotten)
+            note(source.name + ": undeclared voids (NaN, -9999) taken as no data");
+    sources_.clear();
+    float highest = -1e9f;
+    for (const float z : mosaic_.elevation_m.values)
+        highest = z > highest ? z : highest; // NaN compares false
+    constexpr float everest_m = 8849.0f;
+    if (highest > everest_m)
+        throw Error(text("heights reach ", fixed(highest, 0), " m, above any place on Earth"),
+                    "if they are feet give --unit ft; if that is a no-data value give --nodata");
+}
 
-    progress.report(0.61, "finding water surfaces");
-    const std::vector<FlatSurface> flats =
-        find_flats(mosaic.elevation_m); // voids are still voids here
-    Grid<unsigned char> flat = flat_mask(mosaic.elevation_m);
-    progress.report(0.62, "filling voids");
-    const Voids voids = fill_voids(mosaic.elevation_m);
-    report.void_nodes = voids.count;
-    report.filled_nodes = voids.inside;
-    report.outside_nodes = voids.count - voids.inside;
+void Work::find_surfaces() {
+    progress_.report(0.61, "finding water surfaces");
+    auto flats = find_flats(mosaic_.elevation_m); // voids are still voids here
+    progress_.report(0.64, "filling voids");
+    marks_ = Marks(mosaic_.elevation_m.size);
+    const VoidCount voids = fill_voids(mosaic_.elevation_m, marks_);
+    report_.void_nodes = voids.all;
+    report_.filled_nodes = voids.inside;
+    report_.outside_nodes = voids.all - voids.inside;
+    surfaces_ =
+        complete_surfaces(mosaic_.elevation_m, marks_, std::move(flats), report_.notes);
+    std::size_t flat = 0;
+    for (const unsigned char m : marks_.values)
+        flat += (m & mark::flat) != 0;
+    report_.flat_share = double(flat) / double(marks_.values.size());
+    lake_of_ = LakeOf(mosaic_.elevation_m.size);
+}
 
-    progress.report(0.66, "finding the lake");
-    report.flat_share =
-        double(std::count(flat.values.begin(), flat.values.end(), 1)) / double(flat.values.size());
-    std::optional<Node> seed;
-    if (options.at)
-        seed = node_at(mosaic, *options.at);
-    Choice choice;
-    if (!options.level_m) {
-        choice = find_level(mosaic, flats, flat, seed, report.notes);
+std::size_t Work::least_nodes() const {
+    const double cell = mosaic_.spacing_m * mosaic_.spacing_m;
+    return std::size_t(std::max(1.0, std::ceil(options_.min_area_km2 * 1e6 / cell)));
+}
+
+/// `--level M`: all that the level reaches from the seed.
+void Work::fill_level(double level_m, std::optional<Node> seed) {
+    level_given_ = true;
+    level_m = snapped(level_m, surfaces_, mosaic_, seed, report_.notes);
+    const float highest = highest_wet(level_m, has_surface(surfaces_, level_m));
+    if (seed) {
+        const auto wet = nearest_wet(mosaic_.elevation_m, marks_, highest, *seed, 10);
+        if (wet && *wet != *seed)
+            note("--at lies above the level; the nearest node below it, at " +
+                 place(mosaic_, *wet) + ", was taken");
+        seed = wet.value_or(*seed);
     } else {
-        choice.level_m = snapped(*options.level_m, flats, mosaic, seed, report.notes);
-        if (seed) {
-            const auto wet =
-                nearest_wet(mosaic.elevation_m, voids.outside, choice.level_m, *seed, 10);
-            if (wet && *wet != *seed)
-                report.notes.push_back("--at lies above the level; the nearest node below it, at " +
-                                       place(mosaic, *wet) + ", was taken");
-            choice.seed = wet.value_or(*seed);
-        } else {
-            choice.seed = largest_basin_seed(mosaic, voids, choice.level_m, report.notes);
-        }
+        seed = largest_basin_seed(mosaic_, marks_, level_m, highest, report_.notes);
     }
+    FoundLake lake{.id = 1, .level_m = level_m, .seeds = {*seed}};
+    const Filled filled =
+        fill_from(mosaic_.elevation_m, marks_, highest, lake.seeds, 1, lake_of_);
+    lake.nodes = filled.nodes;
+    lake.open_at_edge = filled.open_at_edge;
+    lakes_.push_back(lake);
+}
 
-    WetLake lake{.level_m = choice.level_m, .wet = {}};
-    LakeRecord record;
-    record.id = 1;
-    record.name = options.name;
-    record.level_m = choice.level_m;
-    lake.wet = fill_from(mosaic.elevation_m, voids.outside, choice.level_m, choice.seed,
-                         &record.open_at_edge);
-    if (!options.level_m && record.open_at_edge) {
-        // A surface that was found flat and yet runs out of the data ends where the flat ends:
-        // whole-metre models vary by one. (Closed lower ground is its bed.)
-        bool open = false;
-        const Grid<unsigned char> surface =
-            fill_from(mosaic.elevation_m, voids.outside, choice.level_m, choice.seed, &open,
-                      choice.level_m - 1.0);
-        const auto all = std::count(lake.wet.values.begin(), lake.wet.values.end(), 1);
-        const auto kept = std::count(surface.values.begin(), surface.values.end(), 1);
-        if (kept < all) {
-            report.notes.push_back(
-                text(all - kept,
-                     " nodes more than a metre below the found surface "
-                     "connect to it (a dam or outlet that the grid does not show); "
-                     "they were kept dry. --level ",
-                     choice.level_m, " floods them"));
-            lake.wet = surface;
-            record.open_at_edge = open;
+/// `--level auto --at`: the water surface at the point or nearest to it.
+void Work::fill_found(Node at) {
+    constexpr int reach = 50;
+    // A seed on an island or a jetty still means this lake.
+    std::optional<Node> nearest;
+    long best = 0;
+    for (int dr = -reach; dr <= reach; ++dr)
+        for (int dc = -reach; dc <= reach; ++dc) {
+            const Node n{at.col + dc, at.row + dr};
+            const long d = long(dr) * dr + long(dc) * dc;
+            if (marks_.contains(n) && (marks_[n] & mark::flat) && (!nearest || d < best)) {
+                nearest = n;
+                best = d;
+            }
         }
+    if (!nearest)
+        throw Error(text("no flat water surface within ", reach, " nodes of --at"),
+                    "move it onto the lake, or give the level with --level M");
+    const float level = mosaic_.elevation_m[*nearest];
+    note(text("level ", fixed(level, 4), " m taken from the flat surface at ",
+              place(mosaic_, *nearest)));
+    FlatSurface here;
+    here.level_m = level;
+    for (const FlatSurface& surface : surfaces_)
+        for (const Run& run : surface.runs)
+            if (run.row == nearest->row && run.first <= nearest->col && nearest->col <= run.last)
+                here = surface;
+    here.middle = *nearest;
+    FoundLake lake = fill_surface(search(), here, 1);
+    if (lake.nodes == 0) { // the user knows that it is one
+        const Filled filled =
+            fill_from(mosaic_.elevation_m, marks_, level, lake.seeds, 1, lake_of_);
+        lake.nodes = filled.nodes;
+        lake.open_at_edge = filled.open_at_edge;
     }
+    join_bays(search(), surfaces_, lake);
+    lakes_.push_back(lake);
+}
+
+void Work::choose_and_fill() {
+    progress_.report(0.68, "filling the lakes");
+    std::optional<Node> seed;
+    if (options_.at)
+        seed = node_at(mosaic_, *options_.at);
+    if (options_.level_m)
+        fill_level(*options_.level_m, seed);
+    else if (seed)
+        fill_found(*seed);
+    if (options_.lakes == LakeChoice::all || lakes_.empty()) {
+        auto others = find_lakes(search(), surfaces_, int(lakes_.size()) + 1);
+        lakes_.insert(lakes_.end(), others.begin(), others.end());
+    }
+    if (lakes_.empty())
+        throw Error("no flat water surface was found in the elevation data",
+                    "it may hold the lake's bed: give the level with --level M");
+    const bool chosen = options_.level_m || options_.at;
+    if (!chosen) { // the largest inland one comes first
+        const auto main = std::find_if(lakes_.begin(), lakes_.end(),
+                                       [](const FoundLake& lake) { return !lake.sea; });
+        if (main != lakes_.end())
+            std::rotate(lakes_.begin(), main, main + 1);
+        if (options_.lakes == LakeChoice::one) {
+            for (std::size_t i = 1; i < lakes_.size(); ++i)
+                drain(lake_of_, lakes_[i].seeds);
+            lakes_.resize(1);
+        }
+        note(text("level ", fixed(lakes_[0].level_m, 4), " m taken from the largest of ",
+                  surfaces_.size(), " flat surfaces: ",
+                  fixed(double(lakes_[0].nodes) * mosaic_.spacing_m * mosaic_.spacing_m / 1e6, 3),
+                  " km2 at ", place(mosaic_, lakes_[0].seeds.front())));
+    }
+    number_lakes();
+    if (lakes_.size() > 1)
+        note(text(lakes_.size() - 1,
+                  " other water surfaces of the data stand at their own levels (--lakes one "
+                  "leaves them out)"));
+}
+
+void Work::find_all() {
+    progress_.report(0.68, "filling the lakes");
+    lakes_ = find_lakes(search(), surfaces_, 1);
+    std::stable_partition(lakes_.begin(), lakes_.end(),
+                          [](const FoundLake& lake) { return !lake.sea; });
+    number_lakes();
+}
+
+/// Ids follow the order of lakes_; lakes that touch are parted; what is left is counted.
+void Work::number_lakes() {
+    std::vector<std::uint16_t> renumber(65536, 0);
+    std::vector<double> levels;
+    for (std::size_t i = 0; i < lakes_.size(); ++i) {
+        renumber[std::size_t(lakes_[i].id)] = static_cast<std::uint16_t>(i + 1);
+        lakes_[i].id = int(i + 1);
+        levels.push_back(lakes_[i].level_m);
+    }
+    for (std::uint16_t& id : lake_of_.values)
+        id = renumber[id];
+    if (const std::size_t dried = part_lakes(lake_of_, levels); dried > 0)
+        note(text(dried, " nodes where lakes of different levels touch were taken for the land "
+                         "between them"));
+    boxes_ = boxes_of(lake_of_, int(lakes_.size()));
     // Neither a flat surface nor an interpolated void says anything about the bed.
-    std::size_t nodes = 0, flat_nodes = 0, void_nodes = 0;
-    for (std::size_t i = 0; i < lake.wet.values.size(); ++i) {
-        nodes += lake.wet.values[i];
-        void_nodes += lake.wet.values[i] & voids.filled.values[i];
-        flat.values[i] |= voids.filled.values[i];
-        flat_nodes += lake.wet.values[i] & flat.values[i];
+    std::vector<std::size_t> nodes(lakes_.size()), flat(lakes_.size()), voids(lakes_.size());
+    for (std::size_t i = 0; i < lake_of_.values.size(); ++i)
+        if (const int id = lake_of_.values[i]; id > 0) {
+            const auto k = std::size_t(id - 1);
+            ++nodes[k];
+            flat[k] += (marks_.values[i] & (mark::flat | mark::filled)) != 0;
+            voids[k] += (marks_.values[i] & mark::filled) != 0;
+        }
+    for (std::size_t k = 0; k < lakes_.size(); ++k) {
+        lakes_[k].nodes = nodes[k];
+        flat_share_.push_back(nodes[k] ? double(flat[k]) / double(nodes[k]) : 0.0);
+        if (voids[k] > 0 && k == 0)
+            note(text(voids[k], " nodes of the lake had no data; their heights are interpolated"));
     }
-    record.flat_share = double(flat_nodes) / double(nodes);
-    if (void_nodes > 0)
-        report.notes.push_back(
-            text(void_nodes, " nodes of the lake had no data; their heights are interpolated"));
-    if (record.open_at_edge)
-        report.notes.push_back("the lake touches the edge of the data: it may go on outside, and "
-                               "its figures count only what is inside");
+}
 
-    if (options.bathymetry) {
-        progress.report(0.7, "merging the bathymetry");
+/// Height of the water surface that the DEM holds of a lake: the median of its flat nodes.
+double Work::surface_height(const FoundLake& lake) const {
+    std::vector<float> heights;
+    const auto [low, high] = boxes_[std::size_t(lake.id - 1)];
+    for (int row = low.row; row <= high.row; ++row)
+        for (int col = low.col; col <= high.col; ++col) {
+            const Node n{col, row};
+            if (lake_of_[n] == lake.id && (marks_[n] & (mark::flat | mark::filled)))
+                heights.push_back(mosaic_.elevation_m[n]);
+        }
+    if (heights.empty())
+        return lake.level_m;
+    const auto middle = heights.begin() + std::ptrdiff_t(heights.size() / 2);
+    std::nth_element(heights.begin(), middle, heights.end());
+    return *middle;
+}
+
+/// Merges what was surveyed into one lake; `made` counts the lakes that it reached.
+void Work::make_bed(const FoundLake& lake, std::size_t& made) {
+    const auto k = std::size_t(lake.id - 1);
+    BedPlace place{.lake_of = lake_of_,
+                   .marks = marks_,
+                   .id = lake.id,
+                   .box = boxes_[k],
+                   .surface_m = lake.level_m,
+                   .surface_known = flat_share_[k] > 0.5};
+    // Where the DEM holds the water's surface of its own day, depths count from that; ground
+    // that a higher level floods besides is known.
+    if (place.surface_known)
+        place.surface_m = surface_height(lake);
+    if (options_.bathymetry_level_m)
+        place.surface_m = *options_.bathymetry_level_m;
+    if (std::abs(place.surface_m - lake.level_m) > 0.05)
+        note(text("depths count from ", fixed(place.surface_m, 2), " m",
+                  options_.bathymetry_level_m ? "" : ", the DEM's own water surface"));
+    const Box box = place.widened();
+    Grid<float> survey(place.size(), std::numeric_limits<float>::quiet_NaN());
+    BathymetryKind kind = options_.bathymetry_kind;
+    if (options_.bathymetry) {
         auto surveys = open_sources(
-            *options.bathymetry,
-            {.crs = "",
-             .nodata = {},
-             .crs_hint = "set it in the file, for example with gdal_edit.py -a_srs EPSG:..."});
-        Grid<float> survey(mosaic.elevation_m.size, std::numeric_limits<float>::quiet_NaN());
+            *options_.bathymetry,
+            {.crs = options_.bathymetry_crs,
+             .nodata = std::numeric_limits<double>::quiet_NaN(), // 0 is a depth, no collar
+             .unit = {},
+             .crs_hint = "give it with --bathymetry-crs EPSG:..."});
         for (Source& part : surveys) { // a zip may hold several; the last one counts, as with tiles
-            part.input.role = "bathymetry";
-            report.inputs.push_back(part.input);
-            report.notes.insert(report.notes.end(), part.notes.begin(), part.notes.end());
-            const Grid<float> values = onto_grid(part, mosaic, "bilinear");
+            if (made == 0)
+                add_input(part, "bathymetry");
+            const Grid<float> values =
+                onto_grid(part, mosaic_, box.first, survey.size, "bilinear");
             for (std::size_t i = 0; i < survey.values.size(); ++i)
                 if (!std::isnan(values.values[i]))
                     survey.values[i] = values.values[i];
         }
-        // Where the DEM holds the water's surface of its own day, depths count from that; ground
-        // that a higher level floods besides is known.
-        const bool surface_known = record.flat_share > 0.5;
-        Grid<unsigned char> surface = lake.wet;
-        double surface_m = choice.level_m;
-        if (surface_known) {
-            std::vector<float> heights;
-            for (std::size_t i = 0; i < surface.values.size(); ++i) {
-                surface.values[i] = lake.wet.values[i] & flat.values[i];
-                if (surface.values[i])
-                    heights.push_back(mosaic.elevation_m.values[i]);
-            }
-            std::nth_element(heights.begin(), heights.begin() + std::ptrdiff_t(heights.size() / 2),
-                             heights.end());
-            surface_m = heights[heights.size() / 2];
-            if (std::abs(surface_m - choice.level_m) > 0.05)
-                report.notes.push_back(text("depths count from the DEM's water surface at ",
-                                            fixed(surface_m, 2), " m"));
-        }
-        const auto notes = merge_bathymetry(mosaic.elevation_m, lake.wet, surface, surface_m,
-                                            std::move(survey), options.bathymetry_kind);
-        report.notes.insert(report.notes.end(), notes.begin(), notes.end());
-        record.bed = Bed::measured;
     } else {
-        const bool unknown = options.bed == BedChoice::unknown ||
-                             (options.bed == BedChoice::automatic && record.flat_share > 0.5);
-        record.bed = unknown ? Bed::unknown : Bed::measured;
-        if (unknown) {
-            const std::size_t lowered =
-                make_room(mosaic.elevation_m, lake.wet, flat, choice.level_m);
-            report.notes.push_back(
-                text("bed unknown: ", fixed(100.0 * record.flat_share, 1),
-                     " % of the lake is flat in "
-                     "the DEM, which holds the water's surface. ",
-                     lowered,
-                     " nodes were lowered nominally so that water has room; that is no depth. Give "
-                     "--bathymetry for a real bed"));
+        SoundingFile file = read_soundings(*options_.soundings, options_.depth_field,
+                                           options_.bathymetry_crs, mosaic_);
+        std::vector<float> inside;
+        for (const Sounding& s : file.soundings)
+            if (place.wet({int(std::lround(s.col)), int(std::lround(s.row))}))
+                inside.push_back(float(s.value));
+        if (!inside.empty()) {
+            if (made == 0) {
+                file.input.checksum = checksum(options_.soundings->string());
+                report_.inputs.push_back(file.input);
+                std::promise<std::string> known;
+                known.set_value(file.input.checksum);
+                checksums_.push_back(known.get_future());
+                report_.notes.insert(report_.notes.end(), file.notes.begin(), file.notes.end());
+            }
+            if (kind == BathymetryKind::automatic) {
+                kind = judge_kind(inside, place.surface_m);
+                note(std::string("soundings taken as ") +
+                     (kind == BathymetryKind::depth ? "depths" : "elevations") +
+                     " (by their values near the shore; --bathymetry-kind says otherwise)");
+            }
+            note(text(inside.size(), " of ", file.soundings.size(),
+                      " soundings lie in the lake; the bed between them and the shore (depth 0) is "
+                      "interpolated linearly over triangles"));
+            survey = grid_soundings(place, file.soundings,
+                                    kind == BathymetryKind::depth ? 0.0 : place.surface_m);
         }
     }
+    if (options_.bathymetry_offset_m != 0.0 && kind != BathymetryKind::depth)
+        for (float& v : survey.values)
+            v += float(options_.bathymetry_offset_m);
+    bool any = false;
+    for (int row = box.first.row; row <= box.second.row && !any; ++row)
+        for (int col = box.first.col; col <= box.second.col && !any; ++col)
+            any = place.wet({col, row}) &&
+                  !std::isnan(survey[{col - box.first.col, row - box.first.row}]);
+    if (!any)
+        return;
+    const auto notes = merge_bathymetry(mosaic_.elevation_m, place, survey, kind);
+    report_.notes.insert(report_.notes.end(), notes.begin(), notes.end());
+    beds_[k] = options_.bathymetry ? Bed::measured : Bed::interpolated;
+    ++made;
+}
 
-    progress.report(0.78, "packing heights");
-    out.ground = quantise(mosaic.elevation_m.values, mosaic.elevation_m.size, mosaic.spacing_m, 4,
-                          choice.level_m);
-    out.ground.west_m = mosaic.west_m;
-    out.ground.north_m = mosaic.north_m;
-    const std::size_t raised = separate(out.ground, lake);
-    if (raised > 0)
-        report.notes.push_back(text(raised,
-                                    " nodes beside the water (no data, or below a dam) were "
-                                    "raised to just above the level, where the lake ends"));
-    measure(record, out.ground, lake.wet, mosaic.frame);
-    out.water = water_surface(out.ground, std::span(&lake, 1));
-    out.lakes = {record};
-    out.frame = mosaic.frame;
-
-    if (options.ortho) {
-        Source picture = open_picture(*options.ortho, "");
-        report.inputs.push_back(picture.input);
-        out.ortho = warp_ortho(picture, out.frame, out.ground, progress);
+void Work::make_beds() {
+    for (std::size_t k = 0; k < lakes_.size(); ++k) {
+        const bool unknown = options_.bed == BedChoice::unknown ||
+                             (options_.bed == BedChoice::automatic && flat_share_[k] > 0.5);
+        beds_.push_back(unknown ? Bed::unknown : Bed::measured);
     }
+    if (options_.bathymetry || options_.soundings) {
+        progress_.report(0.72, "merging the bathymetry");
+        std::size_t made = 0;
+        for (const FoundLake& lake : lakes_)
+            if (!lake.sea && lake.nodes > 0)
+                make_bed(lake, made);
+        if (made == 0)
+            throw Error((options_.bathymetry ? *options_.bathymetry : *options_.soundings)
+                                .filename()
+                                .string() +
+                            ": has no value inside the lake",
+                        "check its CRS, its nodata value and that it shows this lake");
+    }
+    if (options_.estimate_depth_m && lakes_[0].nodes > 0) {
+        const BedPlace place{.lake_of = lake_of_,
+                             .marks = marks_,
+                             .id = 1,
+                             .box = boxes_[0],
+                             .surface_m = lakes_[0].level_m,
+                             .surface_known = beds_[0] != Bed::unknown || flat_share_[0] > 0.5};
+        if (beds_[0] != Bed::unknown)
+            throw Error("--estimate-depth is for lakes of unknown depth; the bed of this one is " +
+                            to_string(beds_[0]),
+                        "leave it out, or say --bed unknown");
+        estimate_depths(mosaic_.elevation_m, place, *options_.estimate_depth_m);
+        beds_[0] = Bed::estimated;
+        note(text("bed ESTIMATED from the distance to the shore and a greatest depth of ",
+                  *options_.estimate_depth_m, " m (--estimate-depth); it is no survey"));
+    }
+    std::size_t unknown = 0;
+    for (const Bed bed : beds_)
+        unknown += bed == Bed::unknown;
+    if (!beds_.empty() && beds_[0] == Bed::unknown)
+        note(text("bed unknown: ", fixed(100.0 * flat_share_[0], 1),
+                  " % of the lake is flat in the DEM, which holds the water's surface. It is drawn "
+                  "over a nominal floor; that is no depth. Give --bathymetry or --soundings for a "
+                  "real bed, --estimate-depth for a likely one"));
+    else if (unknown > 0)
+        note(text("the bed of ", unknown, " other lakes is unknown"));
+}
+
+std::vector<LakeRecord> Work::measure_lakes() {
+    progress_.report(0.76, "measuring");
+    std::vector<LakeRecord> out;
+    for (std::size_t k = 0; k < lakes_.size(); ++k) {
+        LakeRecord record;
+        record.id = lakes_[k].id;
+        record.name = lakes_[k].sea ? "sea" : "";
+        record.sea = lakes_[k].sea;
+        record.level_m = lakes_[k].level_m;
+        record.open_at_edge = lakes_[k].open_at_edge;
+        record.flat_share = flat_share_[k];
+        record.bed = beds_.empty() ? (flat_share_[k] > 0.5 ? Bed::unknown : Bed::measured)
+                                   : beds_[k];
+        if (lakes_[k].nodes > 0)
+            measure(record, surface(), lake_of_, boxes_[k], mosaic_.frame);
+        out.push_back(record);
+    }
+    return out;
+}
+
+/// Where the main lake would spill, or does.
+void Work::tell_spill(LakeRecord& lake) {
+    const auto& z = mosaic_.elevation_m;
+    const auto spill = lake.open_at_edge
+                           ? find_spill(z, marks_, lakes_[0].seeds.front())
+                           : find_spill(z, marks_, lake_of_, 1, lake.level_m);
+    if (!spill)
+        return;
+    const auto where = [&](Node n) {
+        return ScenePoint{mosaic_.west_m + n.col * mosaic_.spacing_m,
+                          mosaic_.north_m - n.row * mosaic_.spacing_m};
+    };
+    lake.spill = LakeSpill{.level_m = spill->level_m,
+                           .pass = geo::to_geo(mosaic_.frame, where(spill->pass)),
+                           .at_surface = false};
+    const ScenePoint from = where(lake.seed), pass = where(spill->pass);
+    if (!lake.open_at_edge)
+        return;
+    // A lake that is cut by the edge leaves at its surface; one that is too high, over a pass.
+    double surface_m = -1e9;
+    for (const FlatSurface& s : surfaces_)
+        for (const Node seed : lakes_[0].seeds)
+            if (s.middle == seed)
+                surface_m = std::max(surface_m, double(s.level_m));
+    if (spill->level_m <= surface_m || spill->pass == spill->exit) {
+        lake.spill->at_surface = true;
+        note("the lake touches the edge of the data: it may go on outside, and its figures count "
+             "only what is inside");
+        return;
+    }
+    note(text("at ", fixed(lake.level_m, 2), " m the water spills over a pass of ",
+              fixed(spill->level_m, 2), " m at ", place(mosaic_, spill->pass), ", ",
+              fixed(std::hypot(pass.x_m - from.x_m, pass.y_m - from.y_m) / 1000.0, 1), " km ",
+              compass(pass.x_m - from.x_m, pass.y_m - from.y_m),
+              " of the lake's middle, and runs out of the data at ", place(mosaic_, spill->exit),
+              "; it may rise to ", fixed(spill->level_m, 2), " m"));
+}
+
+ImportResult Work::pack(std::vector<LakeRecord> lakes, const HeightsSink& keep_heights) {
+    progress_.report(0.8, "packing heights");
+    ImportResult out;
+    std::vector<double> levels, reach, rooms;
+    for (const LakeRecord& lake : lakes) {
+        levels.push_back(lake.level_m);
+        reach.push_back(lake.level_m);
+        rooms.push_back(lake.bed == Bed::unknown ? lake.level_m
+                                                 : std::numeric_limits<double>::quiet_NaN());
+        if (lake.bed == Bed::unknown)
+            reach.push_back(lake.level_m - greatest_room_m);
+    }
+    Grid<float>& z = mosaic_.elevation_m;
+    out.ground = quantise(z.values, z.size, mosaic_.spacing_m, 4, reach);
+    out.ground.west_m = mosaic_.west_m;
+    out.ground.north_m = mosaic_.north_m;
+    for (std::size_t i = 0; i < z.values.size(); ++i)
+        if (marks_.values[i] & mark::outside)
+            z.values[i] = std::numeric_limits<float>::quiet_NaN();
+    if (keep_heights) {
+        progress_.report(0.82, "writing heights");
+        keep_heights(z, out.ground, mosaic_.frame);
+        z = {};
+    } else {
+        out.heights_m = std::move(z);
+    }
+    const std::size_t lowered = make_room(out.ground, lake_of_, marks_, rooms);
+    if (lowered > 0 && lakes[0].bed == Bed::unknown)
+        note(text(lowered, " nodes of water without a bed were lowered nominally in ground.tif"));
+    marks_ = {};
+    out.water = empty_water(out.ground, levels);
+    for (double& level : levels)
+        level = drawn_level_m(out.water, level);
+    const std::size_t raised = separate(out.ground, lake_of_, levels);
+    if (raised > 0)
+        note(text(raised, " nodes beside the water (no data, or below a dam) were raised to just "
+                          "above the level, where the lake ends"));
+    pour(out.water, lake_of_, levels);
+    lake_of_ = {};
+    std::erase_if(lakes, [](const LakeRecord& lake) { return lake.area_m2 == 0.0; });
+    if (lakes.empty())
+        throw Error("the lake has no node of its own", "give --lakes one");
+    out.lakes = std::move(lakes);
+    out.frame = mosaic_.frame;
+    if (options_.ortho) {
+        Source picture = open_picture(*options_.ortho, "");
+        add_input(picture, "ortho");
+        out.ortho = warp_ortho(picture, out.frame, out.ground, progress_);
+    }
+    return out;
+}
+
+ImportReport Work::finish_report() {
+    for (std::size_t i = 0; i < checksums_.size(); ++i)
+        report_.inputs[i].checksum = checksums_[i].get();
+    return std::move(report_);
+}
+
+} // namespace
+
+ImportResult import_dem(const ImportOptions& options, const Progress& progress,
+                        const HeightsSink& keep_heights) {
+    Work work(options, progress);
+    work.open();
+    work.build_grid();
+    work.find_surfaces();
+    work.choose_and_fill();
+    work.make_beds();
+    auto lakes = work.measure_lakes();
+    lakes.front().name = options.name;
+    work.tell_spill(lakes.front());
+    ImportResult out = work.pack(std::move(lakes), keep_heights);
+    out.report = work.finish_report();
+    return out;
+}
+
+Detection detect_lakes(const ImportOptions& options, const Progress& progress) {
+    Work work(options, progress);
+    work.open();
+    work.build_grid();
+    work.find_surfaces();
+    work.find_all();
+    Detection out;
+    out.lakes = work.measure_lakes();
+    std::erase_if(out.lakes, [](const LakeRecord& lake) { return lake.area_m2 == 0.0; });
+    std::stable_sort(out.lakes.begin(), out.lakes.end(),
+                     [](const LakeRecord& a, const LakeRecord& b) {
+                         return a.sea != b.sea ? b.sea : a.area_m2 > b.area_m2;
+                     });
+    for (std::size_t i = 0; i < out.lakes.size(); ++i)
+        out.lakes[i].id = int(i + 1);
+    out.frame = work.mosaic().frame;
+    out.spacing_m = work.mosaic().spacing_m;
+    out.report = work.finish_report();
     return out;
 }
 

@@ -7,8 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <gdal_alg.h>
 #include <gdal_utils.h>
 #include <limits>
+#include <memory>
+#include <span>
+#include <unordered_map>
 
 namespace tarn::dem {
 
@@ -86,7 +90,7 @@ Dataset join(const std::vector<Source*>& tiles) {
         tile->raster->SetSpatialRef(&plane);
         handles.push_back(GDALDataset::ToHandle(tile->raster.get()));
     }
-    Arguments arguments{"-vrtnodata", "-32768"}; // each tile's own nodata is honoured as well
+    Arguments arguments{"-vrtnodata", "nan"};
     GDALBuildVRTOptions* options = GDALBuildVRTOptionsNew(arguments.get(), nullptr);
     Dataset vrt(GDALDataset::FromHandle(
         GDALBuildVRT("", int(handles.size()), handles.data(), nullptr, options, nullptr)));
@@ -112,35 +116,17 @@ Grid<float> read_window(GDALDataset& ds, int col, int row, GridSize size) {
                       GSpacing(size.cols) * 4) != CE_None)
         throw Error("heights cannot be read (" + messages.last() + ")",
                     "the file may be cut off: check it with gdalinfo -checksum");
-    int has_nodata = 0;
-    const auto nodata = static_cast<float>(band.GetNoDataValue(&has_nodata));
-    for (float& z : out.values) // no height on Earth exceeds 12 km: lost nodata tags do
-        if ((has_nodata && z == nodata) || !(std::abs(z) < 12'000.0f))
-            z = void_m;
-    return out;
-}
-
-Dataset in_memory(const Grid<float>& grid, const GeoTransform& transform,
-                  const OGRSpatialReference& crs) {
-    auto* driver = GetGDALDriverManager()->GetDriverByName("MEM");
-    Dataset out(driver->Create("", grid.size.cols, grid.size.rows, 1, GDT_Float32, nullptr));
-    if (!out)
-        throw Error("out of memory");
-    GeoTransform copy = transform;
-    out->SetGeoTransform(copy.v);
-    out->SetSpatialRef(&crs);
-    out->GetRasterBand(1)->SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
-    if (out->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, grid.size.cols, grid.size.rows,
-                                        const_cast<float*>(grid.values.data()), grid.size.cols,
-                                        grid.size.rows, GDT_Float32, 0, 0) != CE_None)
-        throw Error("out of memory");
-    return out;
+    return out; // views hold NaN where there is no data
 }
 
 struct Target {
     GridSize size;
     Extent box; ///< outer edges of the cells around the nodes, projected coordinates
     std::string wkt;
+    GeoTransform transform() const {
+        return {{box.west, (box.east - box.west) / size.cols, 0.0, box.north, 0.0,
+                 -(box.north - box.south) / size.rows}};
+    }
 };
 
 Grid<float> warp(const std::vector<GDALDataset*>& inputs, const Target& target,
@@ -150,40 +136,28 @@ Grid<float> warp(const std::vector<GDALDataset*>& inputs, const Target& target,
     std::vector<GDALDatasetH> handles;
     for (GDALDataset* input : inputs)
         handles.push_back(GDALDataset::ToHandle(input));
-    Arguments arguments{"-of",
-                        "MEM",
-                        "-ot",
-                        "Float32",
-                        "-t_srs",
-                        target.wkt,
-                        "-te",
-                        text(target.box.west),
-                        text(target.box.south),
-                        text(target.box.east),
-                        text(target.box.north),
-                        "-ts",
-                        text(target.size.cols),
-                        text(target.size.rows),
-                        "-r",
-                        resampling,
-                        "-dstnodata",
-                        "nan",
-                        "-et",
-                        "0.02",
-                        "-wo",
-                        "NUM_THREADS=ALL_CPUS",
+    Grid<float> out(target.size, void_m);
+    Dataset onto = wrap_memory(out.values.data(), target.size, GDT_Float32);
+    OGRSpatialReference crs;
+    crs.SetFromUserInput(target.wkt.c_str());
+    GeoTransform transform = target.transform();
+    onto->SetGeoTransform(transform.v);
+    onto->SetSpatialRef(&crs);
+    onto->GetRasterBand(1)->SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
+    Arguments arguments{"-r", resampling, "-et", "0.02", "-wo", "NUM_THREADS=ALL_CPUS",
                         "-novshiftgrid"};
     GDALWarpAppOptions* options = GDALWarpAppOptionsNew(arguments.get(), nullptr);
     GdalProgress watcher(progress, what, from, to);
     GDALWarpAppOptionsSetProgress(options, &GdalProgress::callback, &watcher);
-    Dataset out(GDALDataset::FromHandle(
-        GDALWarp("", nullptr, int(handles.size()), handles.data(), options, nullptr)));
+    const bool done = GDALWarp(nullptr, GDALDataset::ToHandle(onto.get()), int(handles.size()),
+                               handles.data(), options, nullptr) != nullptr;
     GDALWarpAppOptionsFree(options);
     watcher.check();
-    if (!out)
+    if (!done || messages.failed())
         throw Error("the rasters cannot be warped (" + messages.last() + ")",
                     "check that the files are whole (gdalinfo -checksum) and their CRS is right");
-    return read_window(*out, 0, 0, target.size);
+    onto->FlushCache(false);
+    return out;
 }
 
 void refuse_too_large(GridSize size, const MosaicOptions& options) {
@@ -262,57 +236,358 @@ Mosaic keep_grid(std::vector<Source>& sources, const MosaicOptions& options,
     return out;
 }
 
-/// Rounds down to three digits, so that a spacing reads well and loses nothing.
-double three_digits(double x) {
-    const double unit = std::pow(10.0, std::floor(std::log10(x)) - 2.0);
+/// Rounds down to two digits, so that a spacing reads well and loses nothing.
+double two_digits(double x) {
+    const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1.0);
     return std::floor(x / unit + 1e-9) * unit;
 }
 
 constexpr int cubic_reach = 4; // nodes: two source cells at half their spacing
 
-/// Could a cubic have dipped from above `level_m` to this node's height? By up to .15 of the
-/// highest step within its kernel; real lower ground, below a dam say, lies beside no such step.
-bool dipped(const Grid<float>& z, Node at, float level_m) {
-    float highest = level_m;
-    for (int dr = -cubic_reach; dr <= cubic_reach; ++dr)
-        for (int dc = -cubic_reach; dc <= cubic_reach; ++dc) {
-            const Node n{at.col + dc, at.row + dr};
-            if (z.contains(n) && z[n] > highest)
-                highest = z[n];
-        }
-    return z[at] > level_m - 0.15f * (highest - level_m) - 2.0f;
+/// Flat surfaces of one source grid, to be asked by pixel.
+class FlatRows {
+public:
+    FlatRows(std::vector<FlatSurface> flats, int first_col, int first_row, int rows)
+        : flats_(std::move(flats)), first_col_(first_col), first_row_(first_row),
+          rows_(std::size_t(rows)) {
+        for (std::size_t i = 0; i < flats_.size(); ++i)
+            for (const Run& run : flats_[i].runs)
+                rows_[std::size_t(run.row)].push_back({run.first, run.last, int(i)});
+        for (auto& row : rows_)
+            std::sort(row.begin(), row.end(),
+                      [](const Span& a, const Span& b) { return a.first < b.first; });
+    }
+    const std::vector<FlatSurface>& flats() const { return flats_; }
+    int first_col() const { return first_col_; }
+    int first_row() const { return first_row_; }
+
+    /// Which surface a pixel of the source belongs to; -1: none.
+    int at(int col, int row) const {
+        col -= first_col_;
+        row -= first_row_;
+        if (row < 0 || row >= int(rows_.size()))
+            return -1;
+        const auto& spans = rows_[std::size_t(row)];
+        auto after = std::upper_bound(spans.begin(), spans.end(), col,
+                                      [](int c, const Span& s) { return c < s.first; });
+        return after != spans.begin() && (--after)->last >= col ? after->flat : -1;
+    }
+
+private:
+    struct Span {
+        int first, last, flat;
+    };
+    std::vector<FlatSurface> flats_;
+    int first_col_, first_row_;
+    std::vector<std::vector<Span>> rows_;
+};
+
+/// Searches the part of a source that the scene uses, a few rows at a time.
+FlatRows find_source_flats(GDALDataset& ds, int c0, int r0, int c1, int r1) {
+    FlatFinder finder(c1 - c0);
+    constexpr int strip = 64;
+    for (int row = r0; row < r1; row += strip) {
+        const Grid<float> part = read_window(ds, c0, row, {c1 - c0, std::min(strip, r1 - row)});
+        for (int r = 0; r < part.size.rows; ++r)
+            finder.add_row(std::span(part.values)
+                               .subspan(part.index({0, r}), std::size_t(part.size.cols)));
+    }
+    return {finder.finish(), c0, r0, r1 - r0};
 }
 
-/// Puts flat surfaces into an interpolated ground, and lifts land beside them that a cubic pulled
-/// below their level to just above it: no puddles along the shore.
-void lay_flats(Grid<float>& z, const Grid<float>& flat) {
-    struct Lift {
-        Node at;
-        float to;
+/// Between the target's pixels and a source's, as gdalwarp goes.
+class PixelMap {
+public:
+    PixelMap(const OGRSpatialReference& source_crs, const double source_transform[6],
+             const Target& target) {
+        OGRSpatialReference local;
+        local.SetFromUserInput(target.wkt.c_str());
+        local.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+        const OGRSpatialReference plane = horizontal(source_crs);
+        const GeoTransform onto = target.transform();
+        GdalMessages messages;
+        exact_ = GDALCreateGenImgProjTransformer3(wkt_of(plane).c_str(), source_transform,
+                                                  wkt_of(local).c_str(), onto.v);
+        if (!exact_)
+            throw Error("water surfaces cannot be placed in the scene (" + messages.last() + ")",
+                        "check the CRS");
+        quick_ = GDALCreateApproxTransformer(GDALGenImgProjTransform, exact_, 0.02);
+    }
+    ~PixelMap() {
+        GDALDestroyApproxTransformer(quick_);
+        GDALDestroyGenImgProjTransformer(exact_);
+    }
+    PixelMap(const PixelMap&) = delete;
+    PixelMap& operator=(const PixelMap&) = delete;
+
+    /// Source coordinates [pixels] of the target's pixel centres in a row; NaN where there are
+    /// none.
+    struct Row {
+        std::vector<double> x, y;
     };
-    std::vector<Lift> lifts;
-    for (int row = 0; row < z.size.rows; ++row)
+    void row(int row, int cols, Row& out) {
+        const auto n = std::size_t(cols);
+        out.x.resize(n);
+        out.y.assign(n, row + 0.5);
+        z_.assign(n, 0.0);
+        good_.assign(n, 0);
+        for (std::size_t i = 0; i < n; ++i)
+            out.x[i] = double(i) + 0.5;
+        GdalMessages quiet;
+        GDALApproxTransform(quick_, TRUE, cols, out.x.data(), out.y.data(), z_.data(),
+                            good_.data());
+        for (std::size_t i = 0; i < n; ++i)
+            if (!good_[i] || !(std::abs(out.x[i]) < 1e9 && std::abs(out.y[i]) < 1e9))
+                out.x[i] = out.y[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+    /// Area that a source pixel covers in the target, in target pixels.
+    double pixel_area(int col, int row) {
+        double x[4] = {col + 0.0, col + 1.0, col + 1.0, col + 0.0};
+        double y[4] = {row + 0.0, row + 0.0, row + 1.0, row + 1.0};
+        double z[4] = {};
+        int good[4] = {};
+        GdalMessages quiet;
+        GDALGenImgProjTransform(exact_, FALSE, 4, x, y, z, good);
+        double twice = 0.0;
+        for (int k = 0; k < 4; ++k) {
+            const int m = (k + 1) % 4;
+            if (!good[k])
+                return 0.0;
+            twice += x[k] * y[m] - x[m] * y[k];
+        }
+        return 0.5 * std::abs(twice);
+    }
+
+private:
+    void* exact_ = nullptr;
+    void* quick_ = nullptr;
+    std::vector<double> z_;
+    std::vector<int> good_;
+};
+
+struct Lift {
+    Node at;
+    float to;
+};
+
+/// Puts the flat surfaces of rows [r0, r1) into a ground that cubics interpolated, and notes land
+/// beside them that a cubic pulled below their level although bilinear interpolation keeps it
+/// above: it is to be lifted, so that there are no puddles along the shore. Land that is really
+/// lower (a polder, the river below a dam) is lower in both.
+/// @param flat    levels of rows [r0 - cubic_reach, r1 + cubic_reach), NaN outside surfaces
+/// @param linear  heights of the same rows by bilinear interpolation; empty: lift nothing
+void lay_flats(Grid<float>& z, const Grid<float>& flat, const Grid<float>& linear, int r0, int r1,
+               std::vector<Lift>& lifts) {
+    const int top = r0 - cubic_reach;
+    constexpr int width = 2 * cubic_reach + 1;
+    constexpr float puddle_m = 0.01f; // pits shallower than this beside a lake are noise
+    for (int row = r0; row < r1; ++row)
         for (int col = 0; col < z.size.cols; ++col) {
             const Node at{col, row};
-            const float level = flat[at];
+            const float level = flat[{col, row - top}];
             if (std::isnan(level))
                 continue;
-            // Lower ground here comes from another raster that knows the bed: it stays.
-            if (!(z[at] >= level || std::isnan(z[at]) || dipped(z, at, level)))
-                continue;
             z[at] = level;
+            if (linear.values.empty())
+                continue;
             bool rim = false;
             for (const Node n :
                  {Node{col - 1, row}, Node{col + 1, row}, Node{col, row - 1}, Node{col, row + 1}})
-                rim |= z.contains(n) && std::isnan(flat[n]);
-            for (int k = 0; rim && k < (2 * cubic_reach + 1) * (2 * cubic_reach + 1); ++k) {
-                const Node n{col + k % (2 * cubic_reach + 1) - cubic_reach,
-                             row + k / (2 * cubic_reach + 1) - cubic_reach};
-                if (z.contains(n) && std::isnan(flat[n]) && z[n] < level + 0.01f &&
-                    dipped(z, n, level))
-                    lifts.push_back({n, level + 0.01f});
+                rim |= z.contains(n) && std::isnan(flat[{n.col, n.row - top}]);
+            for (int k = 0; rim && k < width * width; ++k) {
+                const Node n{col + k % width - cubic_reach, row + k / width - cubic_reach};
+                const Node in_strip{n.col, n.row - top};
+                if (z.contains(n) && std::isnan(flat[in_strip]) && !(z[n] > level) &&
+                    linear[in_strip] >= level - puddle_m)
+                    lifts.push_back(
+                        {n, std::max(linear[in_strip],
+                                     std::nextafter(level, std::numeric_limits<float>::max()))});
             }
         }
+}
+
+/// The surfaces of one source, and how to find them from the target.
+struct FlatLayer {
+    FlatRows flats;
+    std::unique_ptr<PixelMap> map;
+    GDALDataset* source;
+    std::unordered_map<std::size_t, int> changed; ///< node -> surface (-1: none) against "nearest"
+
+    /// Has it a height at this pixel? (Asked only where layers overlap on a surface.)
+    bool covers(int col, int row) const {
+        if (col < 0 || row < 0 || col >= source->GetRasterXSize() ||
+            row >= source->GetRasterYSize())
+            return false;
+        return !std::isnan(read_window(*source, col, row, {1, 1}).values[0]);
+    }
+    /// The surface at a node: nearest neighbour, but for what keep_areas() changed.
+    int at(std::size_t node, double x, double y) const {
+        if (!changed.empty())
+            if (const auto found = changed.find(node); found != changed.end())
+                return found->second;
+        return std::isnan(x) ? -1 : flats.at(int(std::floor(x)), int(std::floor(y)));
+    }
+};
+
+/// Nearest neighbour moves a shore by up to half a cell here and there; over a small lake that is a
+/// percent of its area. Nodes at the very rim are given or taken, the nearest to it first, until
+/// the nodes count the source's area. Surfaces that the target's edge cuts stay as they are.
+void keep_areas(FlatLayer& layer, const Target& target) {
+    struct Near {
+        float distance; ///< to the surface's rim, in source pixels
+        std::size_t node;
+    };
+    struct Balance {
+        std::size_t inside = 0;
+        bool cut = false;
+        std::vector<Near> in, out;
+    };
+    std::vector<Balance> balance(layer.flats.flats().size());
+    if (balance.empty())
+        return;
+    constexpr double reach = 0.35; // pixels; the correction needs a tenth of that
+    const int cols = target.size.cols;
+    PixelMap::Row places;
+    for (int row = 0; row < target.size.rows; ++row) {
+        layer.map->row(row, cols, places);
+        for (int col = 0; col < cols; ++col) {
+            const double x = places.x[std::size_t(col)], y = places.y[std::size_t(col)];
+            if (std::isnan(x))
+                continue;
+            const int px = int(std::floor(x)), py = int(std::floor(y));
+            const double fx = x - px, fy = y - py;
+            const int here = layer.flats.at(px, py);
+            const std::size_t node = std::size_t(row) * std::size_t(cols) + std::size_t(col);
+            if (here >= 0) {
+                Balance& b = balance[std::size_t(here)];
+                ++b.inside;
+                b.cut |= row == 0 || col == 0 || row + 1 == target.size.rows || col + 1 == cols;
+            }
+            // Only the neighbours on the node's own side can be near.
+            const int sx = fx < 0.5 ? -1 : 1, sy = fy < 0.5 ? -1 : 1;
+            const double dx = fx < 0.5 ? fx : 1.0 - fx, dy = fy < 0.5 ? fy : 1.0 - fy;
+            if (std::min(dx, dy) >= reach)
+                continue;
+            const struct {
+                int flat;
+                double distance;
+            } beside[3] = {{layer.flats.at(px + sx, py), dx},
+                           {layer.flats.at(px, py + sy), dy},
+                           {layer.flats.at(px + sx, py + sy), std::hypot(dx, dy)}};
+            double nearest = reach;
+            int other = -1;
+            for (const auto& b : beside)
+                if (b.distance < nearest && b.flat != here && (here >= 0 || b.flat >= 0)) {
+                    nearest = b.distance;
+                    other = b.flat;
+                }
+            if (nearest == reach)
+                continue;
+            if (here >= 0)
+                balance[std::size_t(here)].in.push_back({float(nearest), node});
+            else
+                balance[std::size_t(other)].out.push_back({float(nearest), node});
+        }
+    }
+    for (std::size_t i = 0; i < balance.size(); ++i) {
+        Balance& b = balance[i];
+        const FlatSurface& flat = layer.flats.flats()[i];
+        if (b.cut || b.inside == 0)
+            continue;
+        double area = 0.0;
+        for (const Run& run : flat.runs)
+            area += (run.last - run.first + 1) *
+                    layer.map->pixel_area(layer.flats.first_col() + (run.first + run.last) / 2,
+                                          layer.flats.first_row() + run.row);
+        const long lacking = std::lround(area) - long(b.inside);
+        std::vector<Near>& from = lacking > 0 ? b.out : b.in;
+        const auto count = std::min(std::size_t(std::abs(lacking)), from.size());
+        std::partial_sort(from.begin(), from.begin() + std::ptrdiff_t(count), from.end(),
+                          [](const Near& l, const Near& r) { return l.distance < r.distance; });
+        for (std::size_t k = 0; k < count; ++k)
+            layer.changed[from[k].node] = lacking > 0 ? int(i) : -1;
+    }
+}
+
+/// Water surfaces by nearest neighbour, strip by strip: level and area stay (see the header).
+void keep_flats(Grid<float>& z, const Target& target, const std::vector<GDALDataset*>& inputs,
+                const std::vector<const OGRSpatialReference*>& crs, bool cubic,
+                const Progress& progress) {
+    std::vector<FlatLayer> layers;
+    OGRSpatialReference local;
+    local.SetFromUserInput(target.wkt.c_str());
+    local.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        progress.report(0.42 + 0.08 * double(i) / double(inputs.size()), "finding flat water");
+        double g[6];
+        inputs[i]->GetGeoTransform(g);
+        // Only the part that the scene uses is read.
+        auto back = between(local, *crs[i]);
+        const Extent used = image_of(target.box, *back, "scene");
+        int c0 = 0, r0 = 0, c1 = inputs[i]->GetRasterXSize(), r1 = inputs[i]->GetRasterYSize();
+        if (g[2] == 0.0 && g[4] == 0.0) {
+            const double ca = (used.west - g[0]) / g[1], cb = (used.east - g[0]) / g[1];
+            const double ra = (used.south - g[3]) / g[5], rb = (used.north - g[3]) / g[5];
+            const auto pixel = [](double v) { return int(std::clamp(v, -1e9, 1e9)); };
+            c0 = std::max(c0, pixel(std::floor(std::min(ca, cb))) - 2);
+            c1 = std::min(c1, pixel(std::ceil(std::max(ca, cb))) + 2);
+            r0 = std::max(r0, pixel(std::floor(std::min(ra, rb))) - 2);
+            r1 = std::min(r1, pixel(std::ceil(std::max(ra, rb))) + 2);
+        }
+        if (c0 >= c1 || r0 >= r1)
+            continue;
+        layers.push_back({.flats = find_source_flats(*inputs[i], c0, r0, c1, r1),
+                          .map = std::make_unique<PixelMap>(*crs[i], g, target),
+                          .source = inputs[i],
+                          .changed = {}});
+        keep_areas(layers.back(), target);
+    }
+    std::vector<Lift> lifts;
+    PixelMap::Row places;
+    constexpr int strip = 512;
+    for (int r0 = 0; r0 < target.size.rows; r0 += strip) {
+        progress.report(0.5 + 0.1 * r0 / target.size.rows, "keeping lakes flat");
+        const int r1 = std::min(r0 + strip, target.size.rows);
+        Grid<float> flat({target.size.cols, r1 - r0 + 2 * cubic_reach}, void_m);
+        bool any = false;
+        const int top = std::max(r0 - cubic_reach, 0),
+                  bottom = std::min(r1 + cubic_reach, target.size.rows);
+        for (int row = top; row < bottom; ++row)
+            for (FlatLayer& layer : layers) { // the last one that covers a place counts
+                if (layer.flats.flats().empty() && !any)
+                    continue;
+                layer.map->row(row, target.size.cols, places);
+                for (int col = 0; col < target.size.cols; ++col) {
+                    const double x = places.x[std::size_t(col)], y = places.y[std::size_t(col)];
+                    const int surface = layer.at(
+                        std::size_t(row) * std::size_t(target.size.cols) + std::size_t(col), x, y);
+                    float& here = flat[{col, row - r0 + cubic_reach}];
+                    if (surface >= 0) {
+                        here = layer.flats.flats()[std::size_t(surface)].level_m;
+                        any = true;
+                    } else if (!std::isnan(here) && !std::isnan(x) &&
+                               layer.covers(int(std::floor(x)), int(std::floor(y)))) {
+                        here = void_m;
+                    }
+                }
+            }
+        if (!any)
+            continue;
+        Grid<float> linear;
+        if (cubic) {
+            Target part = target;
+            part.size.rows = bottom - top;
+            const double s = (target.box.north - target.box.south) / target.size.rows;
+            part.box.north = target.box.north - top * s;
+            part.box.south = target.box.north - bottom * s;
+            const Grid<float> rows = warp(inputs, part, "bilinear", Progress{}, "", 0.0, 1.0);
+            linear = Grid<float>(flat.size, void_m);
+            std::copy(rows.values.begin(), rows.values.end(),
+                      linear.values.begin() +
+                          std::ptrdiff_t(linear.index({0, top - r0 + cubic_reach})));
+        }
+        lay_flats(z, flat, linear, r0, r1, lifts);
+    }
     for (const Lift& lift : lifts)
         z[lift.at] = std::max(z[lift.at], lift.to);
 }
@@ -371,7 +646,7 @@ Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
     constexpr double affordable_side = 4096.0;
     const double side = std::max(box.east - box.west, box.north - box.south);
     spacing = options.spacing_m.value_or(
-        three_digits(side / (0.5 * native) <= affordable_side ? 0.5 * native : native));
+        two_digits(side / (0.5 * native) <= affordable_side ? 0.5 * native : native));
 
     Target target;
     target.size = {int(std::clamp(std::ceil((box.east - box.west) / spacing), 0.0, 1e8)),
@@ -417,46 +692,10 @@ Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
                                  " grids out of phase with each other were resampled "
                                  "onto one; where they overlap the last one counts"));
 
-    // Water surfaces: nearest neighbour, so that level and area stay (see the header).
-    std::vector<Dataset> flats;
-    std::vector<GDALDataset*> flat_inputs;
-    auto to_local = wgs84();
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-        double g[6];
-        inputs[i]->GetGeoTransform(g);
-        // Only the part that the scene uses is read.
-        Extent source_box;
-        {
-            auto back = between(local, groups[i].front()->crs);
-            source_box = image_of(target.box, *back, "scene");
-        }
-        int c0 = 0, r0 = 0, c1 = inputs[i]->GetRasterXSize(), r1 = inputs[i]->GetRasterYSize();
-        if (g[2] == 0.0 && g[4] == 0.0) {
-            const double ca = (source_box.west - g[0]) / g[1], cb = (source_box.east - g[0]) / g[1];
-            const double ra = (source_box.south - g[3]) / g[5],
-                         rb = (source_box.north - g[3]) / g[5];
-            c0 = std::max(c0, int(std::floor(std::min(ca, cb))) - 2);
-            c1 = std::min(c1, int(std::ceil(std::max(ca, cb))) + 2);
-            r0 = std::max(r0, int(std::floor(std::min(ra, rb))) - 2);
-            r1 = std::min(r1, int(std::ceil(std::max(ra, rb))) + 2);
-        }
-        if (c0 >= c1 || r0 >= r1)
-            continue;
-        Grid<float> part = read_window(*inputs[i], c0, r0, {c1 - c0, r1 - r0});
-        keep_only_flats(part);
-        GeoTransform transform;
-        std::copy(g, g + 6, transform.v);
-        transform.v[0] = g[0] + c0 * g[1] + r0 * g[2];
-        transform.v[3] = g[3] + c0 * g[4] + r0 * g[5];
-        flats.push_back(in_memory(part, transform, groups[i].front()->crs));
-        flat_inputs.push_back(flats.back().get());
-        progress.report(0.45, "finding flat water");
-    }
-    if (!flat_inputs.empty()) {
-        const Grid<float> level =
-            warp(flat_inputs, target, "near", progress, "keeping lakes flat", 0.45, 0.6);
-        lay_flats(out.elevation_m, level);
-    }
+    std::vector<const OGRSpatialReference*> crs;
+    for (const auto& group : groups)
+        crs.push_back(&group.front()->crs);
+    keep_flats(out.elevation_m, target, inputs, crs, !coarser, progress);
     return out;
 }
 
@@ -480,13 +719,15 @@ Mosaic build_mosaic(std::vector<Source>& sources, const MosaicOptions& options,
     return warp_to_local(sources, options, progress);
 }
 
-Grid<float> onto_grid(Source& source, const Mosaic& mosaic, const std::string& resampling) {
+Grid<float> onto_grid(Source& source, const Mosaic& mosaic, Node north_west, GridSize size,
+                      const std::string& resampling) {
     Target target;
-    target.size = mosaic.elevation_m.size;
+    target.size = size;
     const GeoTransform g =
-        geo_transform(mosaic.frame, mosaic.west_m, mosaic.north_m, mosaic.spacing_m);
-    target.box = {g.v[0], g.v[3] - target.size.rows * mosaic.spacing_m,
-                  g.v[0] + target.size.cols * mosaic.spacing_m, g.v[3]};
+        geo_transform(mosaic.frame, mosaic.west_m + north_west.col * mosaic.spacing_m,
+                      mosaic.north_m - north_west.row * mosaic.spacing_m, mosaic.spacing_m);
+    target.box = {g.v[0], g.v[3] - size.rows * mosaic.spacing_m,
+                  g.v[0] + size.cols * mosaic.spacing_m, g.v[3]};
     target.wkt = mosaic.frame.wkt;
     return warp({source.raster.get()}, target, resampling, Progress{}, "", 0.0, 1.0);
 }

@@ -42,7 +42,8 @@ struct MosaicOptions {
 Mosaic build_mosaic(std::vector<Source>& sources, const MosaicOptions& options,
                     const Progress& progress);
 
-/// Brings one more raster onto an existing mosaic's grid (bilinear, NaN outside).
-Grid<float> onto_grid(Source& source, const Mosaic& mosaic, const std::string& resampling);
+/// Brings one more raster onto a part of an existing mosaic's grid (NaN outside it).
+Grid<float> onto_grid(Source& source, const Mosaic& mosaic, Node north_west, GridSize size,
+                      const std::string& resampling);
 
 } // namespace tarn::dem

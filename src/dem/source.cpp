@@ -8,7 +8,8 @@
 #include <cpl_conv.h>
 #include <cpl_vsi.h>
 #include <cstdio>
-#include <gdal_utils.h>
+#include <span>
+#include <zlib.h>
 
 namespace tarn::dem {
 
@@ -17,10 +18,8 @@ namespace fs = std::filesystem;
 Source::Source() = default;
 Source::Source(Source&&) noexcept = default;
 Source& Source::operator=(Source&&) noexcept = default;
-Source::~Source() { // views before what they read from
+Source::~Source() { // the view before what it reads from
     raster.reset();
-    while (!steps.empty())
-        steps.pop_back();
 }
 
 std::string describe(const OGRSpatialReference& crs) {
@@ -35,34 +34,24 @@ std::string describe(const OGRSpatialReference& crs) {
     return out;
 }
 
-namespace {
-
-/// CRC-32 (polynomial EDB88320, as zip and PNG use it) of a file's bytes.
 std::string checksum(const std::string& path) {
+    if (path.starts_with("/vsicurl"))
+        return "not taken (remote)"; // it would fetch the whole file
     VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
     if (!file)
         return "unreadable";
-    static const auto table = [] {
-        std::vector<std::uint32_t> t(256);
-        for (std::uint32_t i = 0; i < 256; ++i) {
-            std::uint32_t c = i;
-            for (int k = 0; k < 8; ++k)
-                c = (c & 1u) ? 0xEDB88320u ^ (c >> 1) : c >> 1;
-            t[i] = c;
-        }
-        return t;
-    }();
-    std::uint32_t crc = 0xFFFFFFFFu;
+    auto crc = static_cast<std::uint32_t>(::crc32(0, nullptr, 0));
     std::vector<unsigned char> buffer(1 << 20);
     std::size_t got = 0;
     while ((got = VSIFReadL(buffer.data(), 1, buffer.size(), file)) > 0)
-        for (std::size_t i = 0; i < got; ++i)
-            crc = table[(crc ^ buffer[i]) & 0xFFu] ^ (crc >> 8);
+        crc = static_cast<std::uint32_t>(::crc32(crc, buffer.data(), static_cast<unsigned>(got)));
     VSIFCloseL(file);
     char out[16];
-    std::snprintf(out, sizeof out, "%08x", crc ^ 0xFFFFFFFFu);
+    std::snprintf(out, sizeof out, "%08x", crc);
     return out;
 }
+
+namespace {
 
 /// The rasters inside a zip archive, as GDAL paths; the file itself if it is no archive.
 std::vector<std::string> expand(const fs::path& path) {
@@ -168,133 +157,140 @@ Source open_one(const std::string& path, const std::string& crs, const std::stri
         source.input.vertical = "not declared";
     }
     source.input.size = text(source.cols, " x ", source.rows);
-    source.input.checksum = checksum(path);
+    source.path = path;
     return source;
 }
 
-Dataset translate(GDALDataset& from, Arguments& arguments, const std::string& name,
-                  const GdalMessages& messages) {
-    GDALTranslateOptions* options = GDALTranslateOptionsNew(arguments.get(), nullptr);
-    Dataset out(
-        GDALDataset::FromHandle(GDALTranslate("", GDALDataset::ToHandle(&from), options, nullptr)));
-    GDALTranslateOptionsFree(options);
-    if (!out)
-        throw Error(name + ": cannot be read (" + messages.last() + ")",
-                    "try gdalinfo -checksum on it");
-    return out;
+/// Metres per unit of height, from what the band or the CRS says; 0 if the name is not known.
+double metres_per_unit(const std::string& unit) {
+    if (unit.empty() || unit == "m" || unit == "metre" || unit == "meter" || unit == "metres" ||
+        unit == "meters")
+        return 1.0;
+    if (unit == "ft" || unit == "foot" || unit == "feet" || unit == "international foot")
+        return 0.3048;
+    if (unit == "US survey foot" || unit == "us-ft" || unit == "ftUS" || unit == "sft")
+        return 1200.0 / 3937.0;
+    if (unit == "dm" || unit == "decimetre")
+        return 0.1;
+    if (unit == "cm" || unit == "centimetre")
+        return 0.01;
+    if (unit == "mm" || unit == "millimetre")
+        return 0.001;
+    return 0.0;
 }
 
-/// A view of band 1 as stored, in which every kind of void is the one declared nodata value: what
-/// the file declares, a mask of its own, --nodata, and for floating point NaN and -9999, which
-/// writers forget to declare and which no place on land reaches.
-Dataset with_voids_declared(Source& source, const std::optional<double>& nodata,
-                            const GdalMessages& messages) {
-    GDALDataset& ds = *source.original;
-    GDALRasterBand& band = *ds.GetRasterBand(1);
-    int declared = 0;
-    double value = band.GetNoDataValue(&declared);
-    const bool masked = (band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) != 0;
-    const bool floating = GDALDataTypeIsFloating(band.GetRasterDataType()) != 0;
-    const bool second = nodata && declared && *nodata != value;
-    if (!masked && !second && (declared || !floating)) {
-        Arguments view{"-of", "VRT", "-b", "1"};
-        if (nodata && !declared) {
-            view.add("-a_nodata");
-            view.add(text(*nodata));
-        }
-        return translate(ds, view, source.name, messages);
+double height_factor(Source& source, const std::string& asked) {
+    if (!asked.empty()) {
+        source.notes.push_back(source.name + ": heights taken as " + asked + " (--unit)");
+        return metres_per_unit(asked);
     }
-    Arguments copy{"-of", "MEM", "-ot", "Float32", "-b", "1"};
-    Dataset out = translate(ds, copy, source.name, messages);
-    GDALRasterBand& values = *out->GetRasterBand(1);
-    const float mark = -32768.0f;
-    std::vector<float> line(std::size_t(source.cols));
-    std::vector<unsigned char> mask(std::size_t(source.cols), 255);
-    std::size_t odd = 0;
-    for (int row = 0; row < source.rows; ++row) {
-        if (values.RasterIO(GF_Read, 0, row, source.cols, 1, line.data(), source.cols, 1,
-                            GDT_Float32, 0, 0) != CE_None ||
-            (masked && band.GetMaskBand()->RasterIO(GF_Read, 0, row, source.cols, 1, mask.data(),
-                                                    source.cols, 1, GDT_Byte, 0, 0) != CE_None))
-            throw Error(source.name + ": cannot be read (" + messages.last() + ")",
-                        "try gdalinfo -checksum on it");
-        for (std::size_t i = 0; i < line.size(); ++i) {
-            const float z = line[i];
-            const bool forgotten =
-                !declared && (z == -9999.0f || z == -32768.0f || !std::isfinite(z));
-            odd += forgotten;
-            if (mask[i] == 0 || forgotten || !std::isfinite(z) ||
-                (declared && z == static_cast<float>(value)) ||
-                (nodata && z == static_cast<float>(*nodata)))
-                line[i] = mark;
-        }
-        if (values.RasterIO(GF_Write, 0, row, source.cols, 1, line.data(), source.cols, 1,
-                            GDT_Float32, 0, 0) != CE_None)
-            throw Error(source.name + ": cannot be read (" + messages.last() + ")");
-    }
-    values.SetNoDataValue(mark);
-    values.SetScale(band.GetScale());
-    values.SetOffset(band.GetOffset());
-    if (odd > 0)
-        source.notes.push_back(
-            text(source.name, ": ", odd, " undeclared voids (NaN, -9999) taken as no data"));
-    if (second)
-        source.notes.push_back(text(source.name, ": declares nodata ", value, "; --nodata ",
-                                    *nodata, " is taken as void too"));
-    return out;
-}
-
-/// Replaces the raster by a view of band 1 as Float32 metres with its nodata declared.
-void to_metres(Source& source, const std::optional<double>& nodata) {
-    GdalMessages messages;
-    GDALDataset& ds = *source.original;
-    GDALRasterBand& band = *ds.GetRasterBand(1);
-    if (band.GetColorInterpretation() == GCI_RedBand ||
-        band.GetColorInterpretation() == GCI_PaletteIndex ||
-        (ds.GetRasterCount() >= 3 && band.GetRasterDataType() == GDT_Byte))
-        throw Error(source.name + ": is a picture, not elevations", "give it with --ortho");
-    if (GDALDataTypeIsComplex(band.GetRasterDataType()))
-        throw Error(source.name + ": holds complex numbers, not elevations");
+    std::string unit = source.original->GetRasterBand(source.band)->GetUnitType();
     double factor = 1.0;
-    std::string unit = band.GetUnitType();
     if (unit.empty() && source.crs.IsCompound()) { // formats that carry the unit in the CRS only
         const char* name = nullptr;
         factor = source.crs.GetTargetLinearUnits("COMPD_CS|VERT_CS", &name);
+        unit = name ? name : "the CRS's unit";
         if (!(factor > 1e-4 && factor < 1e4))
-            factor = 1.0;
-        if (factor != 1.0)
-            unit = name ? name : "the CRS's unit";
-    } else if (unit == "ft" || unit == "foot" || unit == "feet" || unit == "international foot") {
-        factor = 0.3048;
-    } else if (unit == "US survey foot" || unit == "us-ft" || unit == "ftUS") {
-        factor = 1200.0 / 3937.0;
-    } else if (unit == "cm" || unit == "centimetre") {
-        factor = 0.01;
-    } else if (!unit.empty() && unit != "m" && unit != "metre" && unit != "meter" &&
-               unit != "metres" && unit != "meters") {
+            factor = 0.0;
+    } else if (unit.empty()) {
+        source.unit_declared = false;
+    } else {
+        factor = metres_per_unit(unit);
+    }
+    if (factor == 0.0) {
         source.notes.push_back(source.name + ": vertical unit '" + unit +
-                               "' is not known; taken as metres");
+                               "' is not known; taken as metres (--unit says otherwise)");
+        return 1.0;
     }
     if (factor != 1.0)
         source.notes.push_back(text(source.name, ": heights in ", unit, ", turned into metres"));
+    return factor;
+}
 
-    Dataset view = with_voids_declared(source, nodata, messages);
-    const bool scaled = band.GetScale() != 1.0 || band.GetOffset() != 0.0;
-    Arguments unscale{"-of", "VRT", "-ot", "Float32", "-b", "1", "-unscale"};
-    Dataset metres = translate(*view, unscale, source.name, messages);
-    source.steps.push_back(std::move(view));
-    if (factor != 1.0) {
-        // GDAL's -scale maps [0, 1] to [0, factor] linearly and leaves nodata alone.
-        Arguments feet{"-of", "MEM", "-ot", "Float32", "-scale", "0", "1", "0", text(factor)};
-        Dataset turned = translate(*metres, feet, source.name, messages);
-        source.steps.push_back(std::move(metres));
-        metres = std::move(turned);
+/// Cut-outs of whole-metre models often come with a rim of 0 that nobody declared. Zeros are taken
+/// for such a collar when they reach the raster's edge and nothing else lies within 3 m of 0: a
+/// real coast has ground at 1, 2 and 3 m.
+/// @return the number of zeros, or 0 if they are heights
+std::size_t collar_nodes(GDALDataset& heights, const std::string& name) {
+    GDALRasterBand& band = *heights.GetRasterBand(1);
+    const int cols = heights.GetRasterXSize(), rows = heights.GetRasterYSize();
+    GdalMessages messages;
+    std::vector<float> line(std::size_t(std::max(cols, rows)));
+    const auto read = [&](int x, int y, int w, int h) {
+        if (band.RasterIO(GF_Read, x, y, w, h, line.data(), w, h, GDT_Float32, 0, 0) != CE_None)
+            throw Error(name + ": cannot be read (" + messages.last() + ")",
+                        "the file may be cut off: check it with gdalinfo -checksum");
+        return std::span<const float>(line.data(), std::size_t(w) * std::size_t(h));
+    };
+    const auto zeros = [](std::span<const float> values) {
+        return std::size_t(std::count(values.begin(), values.end(), 0.0f));
+    };
+    if (zeros(read(0, 0, cols, 1)) + zeros(read(0, rows - 1, cols, 1)) +
+            zeros(read(0, 0, 1, rows)) + zeros(read(cols - 1, 0, 1, rows)) <
+        4)
+        return 0;
+    std::size_t found = 0, others = 0;
+    for (int row = 0; row < rows; ++row)
+        for (const float z : read(0, row, cols, 1)) {
+            found += z == 0.0f;
+            others += z != 0.0f && !std::isnan(z);
+            if (z != 0.0f && std::abs(z) <= 3.0f)
+                return 0;
+        }
+    return others > 0 ? found : 0;
+}
+
+/// Replaces the raster by a view of it as Float32 metres, NaN where there is no data.
+void to_metres(Source& source, const SourceOptions& options) {
+    GdalMessages messages;
+    GDALDataset& ds = *source.original;
+    GDALRasterBand& band = *ds.GetRasterBand(source.band);
+    if (source.band == 1 && (band.GetColorInterpretation() == GCI_RedBand ||
+                             band.GetColorInterpretation() == GCI_PaletteIndex ||
+                             (ds.GetRasterCount() >= 3 && band.GetRasterDataType() == GDT_Byte)))
+        throw Error(source.name + ": is a picture, not elevations", "give it with --ortho");
+    if (GDALDataTypeIsComplex(band.GetRasterDataType()))
+        throw Error(source.name + ": holds complex numbers, not elevations",
+                    "give a raster of heights");
+    if (ds.GetRasterCount() > 1)
+        source.notes.push_back(
+            text(source.name, ": has ", ds.GetRasterCount(), " bands; the first is taken"));
+    HeightRule rule;
+    rule.scale = band.GetScale();
+    rule.offset = band.GetOffset();
+    if (rule.scale == 0.0 || !std::isfinite(rule.scale) || !std::isfinite(rule.offset))
+        throw Error(text(source.name, ": band scale ", rule.scale, " and offset ", rule.offset,
+                         " make no heights"),
+                    "set them right with gdal_edit.py -scale -offset");
+    rule.factor = height_factor(source, options.unit);
+    int declared = 0;
+    const double value = band.GetNoDataValue(&declared);
+    if (declared)
+        rule.void_values.push_back(value);
+    if (options.nodata) {
+        rule.void_values.push_back(*options.nodata);
+        if (declared && *options.nodata != value && !std::isnan(*options.nodata))
+            source.notes.push_back(text(source.name, ": declares nodata ", value, "; --nodata ",
+                                        *options.nodata, " is taken as void too"));
     }
-    if (scaled)
-        source.notes.push_back(text(source.name, ": band scale ", band.GetScale(), " and offset ",
-                                    band.GetOffset(), " applied"));
-    metres->SetSpatialRef(&source.crs);
-    source.raster = std::move(metres);
+    rule.use_mask = (band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) != 0;
+    rule.find_forgotten = !declared && GDALDataTypeIsFloating(band.GetRasterDataType());
+    source.findings = std::make_shared<HeightFindings>();
+    if (!declared && !rule.use_mask && !options.nodata) {
+        const Dataset plain = view_heights(ds, source.band, rule, source.findings);
+        if (const std::size_t zeros = collar_nodes(*plain, source.name)) {
+            rule.void_values.push_back(-rule.offset / rule.scale);
+            source.notes.push_back(
+                text(source.name, ": ", zeros, " nodes of exactly 0 reach the raster's edge and "
+                                               "nothing else lies within 3 m of 0: taken as no "
+                                               "data (--nodata none keeps them)"));
+        }
+    }
+    if (rule.scale != 1.0 || rule.offset != 0.0)
+        source.notes.push_back(text(source.name, ": band scale ", rule.scale, " and offset ",
+                                    rule.offset, " applied"));
+    source.raster = view_heights(ds, source.band, rule, source.findings);
+    source.raster->SetSpatialRef(&source.crs);
 }
 
 } // namespace
@@ -305,7 +301,7 @@ std::vector<Source> open_sources(const fs::path& path, const SourceOptions& opti
     for (const std::string& member : expand(path)) {
         out.push_back(open_one(member, options.crs, options.crs_hint));
         out.back().input.role = "dem";
-        to_metres(out.back(), options.nodata);
+        to_metres(out.back(), options);
     }
     return out;
 }

@@ -2,6 +2,7 @@
 /// @file source.hpp  One elevation raster as the user gave it, opened and made comparable.
 #include "core/import_report.hpp"
 #include "dem/gdal_door.hpp"
+#include "dem/height_view.hpp"
 
 #include <filesystem>
 #include <ogr_spatialref.h>
@@ -11,17 +12,20 @@
 
 namespace tarn::dem {
 
-/// A raster with one Float32 band of metres, its nodata declared, its CRS known.
+/// A raster with one Float32 band of metres, NaN where there is no data, its CRS known.
 struct Source {
     std::string name; ///< file name, for messages
-    Dataset raster;
-    std::vector<Dataset> steps; ///< views between `original` and `raster`
-    Dataset original;           ///< what they read from; outlives them
+    std::string path; ///< as GDAL opens it
+    Dataset raster;   ///< what everyone reads
+    Dataset original; ///< the file itself, which `raster` is a view of; outlives it
+    int band = 1;     ///< of the original
     OGRSpatialReference crs;
     GeoTransform transform;
     int cols = 0, rows = 0;
     ImportInput input;
+    bool unit_declared = true;      ///< the file says in which unit its heights are
     std::vector<std::string> notes; ///< what was assumed while opening
+    std::shared_ptr<HeightFindings> findings; ///< what reading has met so far
     Source();
     Source(Source&&) noexcept;
     Source& operator=(Source&&) noexcept;
@@ -30,7 +34,9 @@ struct Source {
 
 struct SourceOptions {
     std::string crs;              ///< used for every raster instead of its own; "" keeps it
-    std::optional<double> nodata; ///< used for every raster besides its own
+    std::optional<double> nodata; ///< void besides what the files declare; NaN: only those, and
+                                  ///< no collar of zeros is looked for
+    std::string unit;             ///< "m", "ft", "us-ft": instead of what the files declare
     std::string crs_hint = "give one with --crs EPSG:..."; ///< what a missing CRS's message says
 };
 
@@ -41,6 +47,9 @@ std::vector<Source> open_sources(const std::filesystem::path& path, const Source
 
 /// As above for pictures (orthophotos): the dataset as it is, CRS checked.
 Source open_picture(const std::filesystem::path& path, const std::string& crs);
+
+/// CRC-32 (as zip has it) of a file's bytes, hexadecimal.
+std::string checksum(const std::string& path);
 
 /// "EPSG:..." or the name a CRS carries.
 std::string describe(const OGRSpatialReference& crs);

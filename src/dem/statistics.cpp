@@ -9,22 +9,71 @@ namespace tarn::dem {
 
 namespace {
 
-double shoreline_length_m(double level_m, const Heightfield& ground, const Grid<unsigned char>& wet,
-                          Node low, Node high) {
+/// The wet node with the greatest chessboard distance to dry land: "in the middle of the lake".
+Node innermost(const LakeOf& lakes, int id, Node low, Node high) {
+    const GridSize size{high.col - low.col + 1, high.row - low.row + 1};
+    Grid<std::uint16_t> distance(size);
+    const auto at = [&](int col, int row) {
+        return distance.contains({col, row}) ? int(distance[{col, row}]) : 0;
+    };
+    const auto wet = [&](int col, int row) { return lakes[{low.col + col, low.row + row}] == id; };
+    const auto store = [&](int col, int row, int d) {
+        distance[{col, row}] = static_cast<std::uint16_t>(std::min(d, 65535));
+    };
+    for (int row = 0; row < size.rows; ++row)
+        for (int col = 0; col < size.cols; ++col)
+            if (wet(col, row))
+                store(col, row,
+                      1 + std::min({at(col - 1, row - 1), at(col, row - 1), at(col + 1, row - 1),
+                                    at(col - 1, row)}));
+    Node best = low;
+    int greatest = 0;
+    for (int row = size.rows - 1; row >= 0; --row)
+        for (int col = size.cols - 1; col >= 0; --col)
+            if (wet(col, row)) {
+                const int d = std::min(at(col, row),
+                                       1 + std::min({at(col + 1, row + 1), at(col, row + 1),
+                                                     at(col - 1, row + 1), at(col + 1, row)}));
+                store(col, row, d);
+                if (d > greatest) {
+                    greatest = d;
+                    best = {low.col + col, low.row + row};
+                }
+            }
+    return best;
+}
+
+} // namespace
+
+Boxes boxes_of(const LakeOf& lakes, int count) {
+    Boxes out(std::size_t(count), {Node{lakes.size.cols, lakes.size.rows}, Node{-1, -1}});
+    for (int row = 0; row < lakes.size.rows; ++row)
+        for (int col = 0; col < lakes.size.cols; ++col)
+            if (const int id = lakes[{col, row}]; id > 0 && id <= count) {
+                auto& [low, high] = out[std::size_t(id - 1)];
+                low = {std::min(low.col, col), std::min(low.row, row)};
+                high = {std::max(high.col, col), std::max(high.row, row)};
+            }
+    return out;
+}
+
+double shoreline_length_m(double level_m, const Surface& ground, const LakeOf& lakes, int id,
+                          const Box& box) {
+    const auto [low, high] = box;
     double length = 0.0;
     const double s = ground.spacing_m;
-    for (int row = std::max(low.row - 1, 0); row < std::min(high.row + 1, ground.size().rows - 1);
+    for (int row = std::max(low.row - 1, 0); row < std::min(high.row + 1, ground.elevation_m.size.rows - 1);
          ++row)
         for (int col = std::max(low.col - 1, 0);
-             col < std::min(high.col + 1, ground.size().cols - 1); ++col) {
+             col < std::min(high.col + 1, ground.elevation_m.size.cols - 1); ++col) {
             // Corners clockwise from the north-west.
             const Node corner[4] = {{col, row}, {col + 1, row}, {col + 1, row + 1}, {col, row + 1}};
             bool is_wet[4];
             double above[4];
             int count = 0;
             for (int k = 0; k < 4; ++k) {
-                is_wet[k] = wet[corner[k]] != 0;
-                above[k] = ground.elevation_m(corner[k]) - level_m;
+                is_wet[k] = lakes[corner[k]] == id;
+                above[k] = double(ground.elevation_m[corner[k]]) - level_m;
                 count += is_wet[k];
             }
             if (count == 0 || count == 4)
@@ -48,30 +97,26 @@ double shoreline_length_m(double level_m, const Heightfield& ground, const Grid<
     return length;
 }
 
-/// Dry parts inside the box (widened by one) that its rim cannot reach by 4-neighbour steps.
-int count_islands(const Grid<unsigned char>& wet, Node low, Node high) {
+int count_islands(const LakeOf& lakes, int id, const Box& box) {
+    const auto [low, high] = box;
     const GridSize size{high.col - low.col + 3, high.row - low.row + 3};
     Grid<unsigned char> seen(size);
+    const Node corner{low.col - 1, low.row - 1};
     const auto is_wet = [&](Node n) {
-        const Node at{n.col + low.col - 1, n.row + low.row - 1};
-        return wet.contains(at) && wet[at];
+        const Node at{n.col + corner.col, n.row + corner.row};
+        return lakes.contains(at) && lakes[at] == id;
     };
-    std::vector<Node> queue;
     const auto sweep = [&](Node from) {
-        queue.assign(1, from);
         seen[from] = 1;
-        for (std::size_t i = 0; i < queue.size(); ++i) {
-            const Node at = queue[i];
-            const Node next[4] = {{at.col - 1, at.row},
-                                  {at.col + 1, at.row},
-                                  {at.col, at.row - 1},
-                                  {at.col, at.row + 1}};
-            for (const Node n : next)
-                if (seen.contains(n) && !seen[n] && !is_wet(n)) {
-                    seen[n] = 1;
-                    queue.push_back(n);
-                }
-        }
+        search<4>(
+            size, {from},
+            [&](Node n) {
+                if (seen[n] || is_wet(n))
+                    return false;
+                seen[n] = 1;
+                return true;
+            },
+            [](Node) {});
     };
     // The rim of the widened box holds no wet node and is one connected ring.
     sweep({0, 0});
@@ -85,86 +130,60 @@ int count_islands(const Grid<unsigned char>& wet, Node low, Node high) {
     return islands;
 }
 
-/// The wet node with the greatest chessboard distance to dry land: "in the middle of the lake".
-Node innermost(const Grid<unsigned char>& wet, Node low, Node high) {
-    Grid<int> distance(wet.size, 0);
-    Node best = low;
-    const auto at = [&](int col, int row) {
-        return distance.contains({col, row}) ? distance[{col, row}] : 0;
-    };
-    for (int row = low.row; row <= high.row; ++row)
-        for (int col = low.col; col <= high.col; ++col)
-            if (wet[{col, row}])
-                distance[{col, row}] = 1 + std::min({at(col - 1, row - 1), at(col, row - 1),
-                                                     at(col + 1, row - 1), at(col - 1, row)});
-    int greatest = 0;
-    for (int row = high.row; row >= low.row; --row)
-        for (int col = high.col; col >= low.col; --col)
-            if (wet[{col, row}]) {
-                const int d = std::min(distance[{col, row}],
-                                       1 + std::min({at(col + 1, row + 1), at(col, row + 1),
-                                                     at(col - 1, row + 1), at(col + 1, row)}));
-                distance[{col, row}] = d;
-                if (d > greatest) {
-                    greatest = d;
-                    best = {col, row};
-                }
-            }
-    return best;
-}
-
-} // namespace
-
-void measure(LakeRecord& record, const Heightfield& ground, const Grid<unsigned char>& wet,
+void measure(LakeRecord& record, const Surface& ground, const LakeOf& lakes, const Box& box,
              const geo::Frame& frame) {
-    Node low{wet.size.cols, wet.size.rows}, high{-1, -1};
-    std::size_t nodes = 0;
-    double depth_sum = 0.0, deepest = 0.0;
+    const auto [low, high] = box;
+    const int id = record.id;
     const double cell = ground.spacing_m * ground.spacing_m;
-    for (int row = 0; row < wet.size.rows; ++row)
-        for (int col = 0; col < wet.size.cols; ++col) {
-            if (!wet[{col, row}])
-                continue;
-            ++nodes;
-            low = {std::min(low.col, col), std::min(low.row, row)};
-            high = {std::max(high.col, col), std::max(high.row, row)};
-            const double depth = record.level_m - ground.elevation_m(Node{col, row});
-            depth_sum += depth;
-            deepest = std::max(deepest, depth);
-        }
+    // Depths count from the level as files would hold it (float32), as GIS tools do.
+    const auto level_m = double(static_cast<float>(record.level_m));
     record.west_north = low;
     record.east_south = high;
-    record.area_m2 = double(nodes) * cell;
-
+    std::size_t nodes = 0;
+    double depth_sum = 0.0, deepest = 0.0, true_area = 0.0, true_volume = 0.0;
     // The scale factor varies over kilometres: one value per block of 32 x 32 nodes is plenty.
-    record.true_area_m2 = 0.0;
     constexpr int block = 32;
     for (int r0 = low.row; r0 <= high.row; r0 += block)
         for (int c0 = low.col; c0 <= high.col; c0 += block) {
             std::size_t here = 0;
+            double depths = 0.0;
             for (int row = r0; row <= std::min(r0 + block - 1, high.row); ++row)
-                for (int col = c0; col <= std::min(c0 + block - 1, high.col); ++col)
-                    here += wet[{col, row}] != 0;
+                for (int col = c0; col <= std::min(c0 + block - 1, high.col); ++col) {
+                    if (lakes[{col, row}] != id)
+                        continue;
+                    const double depth =
+                        std::max(level_m - double(ground.elevation_m[{col, row}]), 0.0);
+                    ++here;
+                    depths += depth;
+                    deepest = std::max(deepest, depth);
+                }
             if (here == 0)
                 continue;
             const double k = geo::scale_factor(
-                frame, {ground.x_m(c0 + 0.5 * (block - 1)), ground.y_m(r0 + 0.5 * (block - 1))});
-            record.true_area_m2 += double(here) * cell / (k * k);
+                frame, {ground.west_m + (c0 + 0.5 * (block - 1)) * ground.spacing_m,
+                        ground.north_m - (r0 + 0.5 * (block - 1)) * ground.spacing_m});
+            nodes += here;
+            depth_sum += depths;
+            true_area += double(here) * cell / (k * k);
+            true_volume += depths * cell / (k * k);
         }
-
+    record.area_m2 = double(nodes) * cell;
+    record.true_area_m2 = true_area;
     record.volume_m3.reset();
+    record.true_volume_m3.reset();
     record.max_depth_m.reset();
     record.mean_depth_m.reset();
-    if (record.bed != Bed::unknown) {
+    if (record.bed != Bed::unknown && nodes > 0) {
         record.volume_m3 = depth_sum * cell;
+        record.true_volume_m3 = true_volume;
         record.max_depth_m = deepest;
         record.mean_depth_m = depth_sum / double(nodes);
     }
-    record.shoreline_m = shoreline_length_m(record.level_m, ground, wet, low, high);
-    record.islands = count_islands(wet, low, high);
-    record.seed = innermost(wet, low, high);
-    record.position =
-        geo::to_geo(frame, {ground.x_m(record.seed.col), ground.y_m(record.seed.row)});
+    record.shoreline_m = shoreline_length_m(level_m, ground, lakes, id, box);
+    record.islands = count_islands(lakes, id, box);
+    record.seed = innermost(lakes, id, low, high);
+    record.position = geo::to_geo(frame, {ground.west_m + record.seed.col * ground.spacing_m,
+                                          ground.north_m - record.seed.row * ground.spacing_m});
 }
 
 } // namespace tarn::dem

@@ -13,49 +13,70 @@ namespace tarn::dem {
 
 namespace {
 
-/// A MEM dataset over our own memory, nothing copied.
-Dataset wrap(void* data, GridSize size, GDALDataType type) {
-    register_drivers();
-    auto* driver = GetGDALDriverManager()->GetDriverByName("MEM");
-    Dataset out(driver->Create("", size.cols, size.rows, 0, type, nullptr));
-    char pointer[64] = {};
-    CPLPrintPointer(pointer, data, sizeof pointer - 1);
-    CPLStringList options;
-    options.SetNameValue("DATAPOINTER", pointer);
-    if (!out || out->AddBand(type, options.List()) != CE_None)
-        throw Error("out of memory");
-    return out;
-}
+constexpr unsigned char no_data = mark::outside | mark::filled;
 
 /// Gives each enclosed void that is left the lowest height around it: a lake without returns is
 /// flat.
-void fill_middles(Grid<float>& z, const Grid<unsigned char>& outside) {
-    Grid<unsigned char> seen(z.size);
-    std::vector<Node> members;
+void fill_middles(Grid<float>& z, Marks& marks) {
+    const auto left = [&](Node n) { return std::isnan(z[n]) && !(marks[n] & mark::outside); };
     for (int row = 0; row < z.size.rows; ++row)
         for (int col = 0; col < z.size.cols; ++col) {
             const Node start{col, row};
-            if (!std::isnan(z[start]) || outside[start] || seen[start])
+            if (!left(start))
                 continue;
             float lowest = std::numeric_limits<float>::infinity();
-            members.assign(1, start);
-            seen[start] = 1;
-            for (std::size_t i = 0; i < members.size(); ++i) {
-                const Node at = members[i];
-                for (const Node n : {Node{at.col - 1, at.row}, Node{at.col + 1, at.row},
-                                     Node{at.col, at.row - 1}, Node{at.col, at.row + 1}}) {
-                    if (!z.contains(n) || outside[n])
-                        continue;
-                    if (!std::isnan(z[n])) {
+            marks[start] |= mark::seen;
+            search<4>(
+                z.size, {start},
+                [&](Node n) {
+                    if (!std::isnan(z[n]) && !(marks[n] & mark::outside))
                         lowest = std::min(lowest, z[n]);
-                    } else if (!seen[n]) {
-                        seen[n] = 1;
-                        members.push_back(n);
-                    }
-                }
-            }
-            for (const Node n : members)
-                z[n] = lowest;
+                    if (!left(n) || (marks[n] & mark::seen))
+                        return false;
+                    marks[n] |= mark::seen;
+                    return true;
+                },
+                [](Node) {});
+            z[start] = lowest;
+            search<4>(
+                z.size, {start},
+                [&](Node n) {
+                    if (!left(n))
+                        return false;
+                    z[n] = lowest;
+                    return true;
+                },
+                [](Node) {});
+        }
+    clear(marks, mark::seen);
+}
+
+/// The interpolation tile by tile: no node's value depends on any farther than `reach` away.
+void interpolate_marked(Grid<float>& z, const Marks& marks, int reach) {
+    constexpr int side = 1024;
+    for (int r0 = 0; r0 < z.size.rows; r0 += side)
+        for (int c0 = 0; c0 < z.size.cols; c0 += side) {
+            const int r1 = std::min(r0 + side, z.size.rows), c1 = std::min(c0 + side, z.size.cols);
+            bool any = false;
+            for (int row = r0; row < r1 && !any; ++row)
+                for (int col = c0; col < c1 && !any; ++col)
+                    any = marks[{col, row}] & no_data;
+            if (!any)
+                continue;
+            const int halo = reach + 2;
+            const int wr = std::max(r0 - halo, 0), wc = std::max(c0 - halo, 0);
+            Grid<float> part({std::min(c1 + halo, z.size.cols) - wc,
+                              std::min(r1 + halo, z.size.rows) - wr});
+            for (int row = 0; row < part.size.rows; ++row)
+                for (int col = 0; col < part.size.cols; ++col)
+                    part[{col, row}] = marks[{wc + col, wr + row}] & no_data
+                                           ? std::numeric_limits<float>::quiet_NaN()
+                                           : z[{wc + col, wr + row}];
+            interpolate_voids(part, reach);
+            for (int row = r0; row < r1; ++row)
+                for (int col = c0; col < c1; ++col)
+                    if (marks[{col, row}] & no_data)
+                        z[{col, row}] = part[{col - wc, row - wr}];
         }
 }
 
@@ -74,8 +95,8 @@ void interpolate_voids(Grid<float>& values, int reach) {
     const Grid<unsigned char> had = valid;
     if (any && !all) {
         GdalMessages messages;
-        Dataset data = wrap(values.values.data(), values.size, GDT_Float32);
-        Dataset mask = wrap(valid.values.data(), values.size, GDT_Byte);
+        Dataset data = wrap_memory(values.values.data(), values.size, GDT_Float32);
+        Dataset mask = wrap_memory(valid.values.data(), values.size, GDT_Byte);
         GdalMessages inner;
         CPLStringList options;
         options.SetNameValue("TEMP_FILE_DRIVER", "MEM");
@@ -98,53 +119,53 @@ void interpolate_voids(Grid<float>& values, int reach) {
     }
 }
 
-Voids fill_voids(Grid<float>& z) {
-    Voids out{.outside = Grid<unsigned char>(z.size), .filled = Grid<unsigned char>(z.size)};
+VoidCount fill_voids(Grid<float>& z, Marks& marks) {
+    VoidCount count;
     float lowest = std::numeric_limits<float>::infinity();
     for (const float value : z.values) {
-        out.count += std::isnan(value);
+        count.all += std::isnan(value);
         if (!std::isnan(value))
             lowest = std::min(lowest, value);
     }
-    if (out.count == z.size.count())
+    if (count.all == z.size.count())
         throw Error("there is no elevation data in this region",
                     "check --nodata, --bounds and the tiles' coverage");
-    if (out.count == 0)
-        return out;
+    if (count.all == 0)
+        return count;
 
     // Voids reachable from the edge over voids lie outside the data.
-    std::vector<Node> queue;
-    const auto push = [&](Node n) {
-        if (std::isnan(z[n]) && !out.outside[n]) {
-            out.outside[n] = 1;
-            queue.push_back(n);
-        }
+    std::vector<Node> rim;
+    std::uint64_t outside = 0;
+    const auto enter = [&](Node n) {
+        if (!std::isnan(z[n]) || (marks[n] & mark::outside))
+            return false;
+        marks[n] |= mark::outside;
+        ++outside;
+        return true;
+    };
+    const auto start = [&](Node n) {
+        if (enter(n))
+            rim.push_back(n);
     };
     for (int col = 0; col < z.size.cols; ++col) {
-        push({col, 0});
-        push({col, z.size.rows - 1});
+        start({col, 0});
+        start({col, z.size.rows - 1});
     }
     for (int row = 0; row < z.size.rows; ++row) {
-        push({0, row});
-        push({z.size.cols - 1, row});
+        start({0, row});
+        start({z.size.cols - 1, row});
     }
-    for (std::size_t i = 0; i < queue.size(); ++i) {
-        const Node at = queue[i];
-        const Node next[4] = {
-            {at.col - 1, at.row}, {at.col + 1, at.row}, {at.col, at.row - 1}, {at.col, at.row + 1}};
-        for (const Node n : next)
-            if (z.contains(n))
-                push(n);
-    }
-    out.inside = out.count - queue.size();
+    search<4>(z.size, std::move(rim), enter, [](Node) {});
+    count.inside = count.all - outside;
     for (std::size_t i = 0; i < z.values.size(); ++i)
-        out.filled.values[i] = std::isnan(z.values[i]) && !out.outside.values[i];
-    interpolate_voids(z, 100);
-    fill_middles(z, out.outside);
+        if (std::isnan(z.values[i]) && !(marks.values[i] & mark::outside))
+            marks.values[i] |= mark::filled;
+    interpolate_marked(z, marks, 100);
+    fill_middles(z, marks);
     for (float& value : z.values)
         if (std::isnan(value))
             value = lowest;
-    return out;
+    return count;
 }
 
 } // namespace tarn::dem

@@ -7,103 +7,126 @@ namespace tarn::dem {
 
 namespace {
 
-template <class Visit>
-void each_neighbour(const Grid<unsigned char>& grid, Node at, Visit visit) {
-    for (int dr = -1; dr <= 1; ++dr)
-        for (int dc = -1; dc <= 1; ++dc) {
-            const Node n{at.col + dc, at.row + dr};
-            if ((dr != 0 || dc != 0) && grid.contains(n))
-                visit(n);
-        }
+std::uint16_t code_of(const Heightfield& water, double level_m) {
+    const double code = std::round((level_m - water.offset_m) / water.scale_m);
+    return static_cast<std::uint16_t>(std::clamp(code, 1.0, 65535.0));
 }
 
-/// Offset and step so that each level is met best; see the header for what that serves.
-void choose_codes(std::span<const double> levels, Heightfield& water) {
+} // namespace
+
+Heightfield empty_water(const Heightfield& ground, std::span<const double> levels) {
+    Heightfield water = {.codes = Grid<std::uint16_t>(ground.size(), no_water_code),
+                         .spacing_m = ground.spacing_m,
+                         .west_m = ground.west_m,
+                         .north_m = ground.north_m,
+                         .offset_m = ground.offset_m,
+                         .scale_m = ground.scale_m};
+    if (levels.empty())
+        return water;
     const auto [low, high] = std::minmax_element(levels.begin(), levels.end());
     const double range = *high - *low;
-    if (range == 0.0) {
-        water.scale_m = 0.001;
-        water.offset_m = *low - 0.001; // code 1 is the level
-        return;
-    }
+    const double first = levels.front();
+    // Codes are counted from the first level, so that it is met whatever the step.
     const auto worst = [&](double step) {
         double error = 0.0;
         for (const double level : levels) {
-            const double f = (level - *low) / step;
+            const double f = (level - first) / step;
             error = std::max(error, std::abs(f - std::round(f)) * step);
         }
         return error;
     };
     // 16 bits over `range` may be coarser than a millimetre: then a step is searched on which
     // all levels nearly fall, beginning with those that people write (whole millimetres ...).
-    double best_step = std::max(range / 65534.0, 1e-6);
+    const double finest = std::max(range / 65532.0, 1e-6);
+    double best_step = range == 0.0 ? 0.001 : finest;
     double best = worst(best_step);
     for (const double step : {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1})
-        if (range / step <= 65534.0 && worst(step) < best) {
+        if (step >= finest && worst(step) < best) {
             best = worst(step);
             best_step = step;
         }
     for (int i = 0; i < 20'000 && best > 0.0005; ++i) {
-        const double step = std::max(range / 65534.0, 1e-6) * (1.0 + 0.5 * i / 20'000.0);
+        const double step = finest * (1.0 + 0.5 * i / 20'000.0);
         if (worst(step) < best) {
             best = worst(step);
             best_step = step;
         }
     }
     water.scale_m = best_step;
-    water.offset_m = *low - best_step;
+    water.offset_m = first - best_step * (std::round((first - *low) / best_step) + 1.0);
+    return water;
 }
 
-} // namespace
+double drawn_level_m(const Heightfield& water, double level_m) {
+    return water.offset_m + water.scale_m * code_of(water, level_m);
+}
 
-std::size_t separate(Heightfield& ground, const WetLake& lake) {
+std::size_t part_lakes(LakeOf& lake_of, std::span<const double> levels) {
+    if (levels.size() < 2)
+        return 0;
+    std::size_t dried = 0;
+    for (int row = 0; row < lake_of.size.rows; ++row)
+        for (int col = 0; col < lake_of.size.cols; ++col) {
+            const Node at{col, row};
+            if (lake_of[at] == 0)
+                continue;
+            const double level = levels[lake_of[at] - 1u];
+            bool higher = false;
+            each_neighbour(lake_of.size, at, [&](Node n) {
+                higher |= lake_of[n] != 0 && levels[lake_of[n] - 1u] < level;
+            });
+            if (higher) {
+                lake_of[at] = 0;
+                ++dried;
+            }
+        }
+    return dried;
+}
+
+std::size_t separate(Heightfield& ground, const LakeOf& lake_of, std::span<const double> levels) {
+    std::vector<std::uint16_t> below, above;
+    for (const double level : levels) {
+        const double exact = (level - ground.offset_m) / ground.scale_m;
+        below.push_back(
+            static_cast<std::uint16_t>(std::clamp(std::ceil(exact) - 1.0, 0.0, 65535.0)));
+        above.push_back(
+            static_cast<std::uint16_t>(std::clamp(std::floor(exact) + 1.0, 0.0, 65535.0)));
+    }
     std::size_t raised = 0;
-    const double exact = (lake.level_m - ground.offset_m) / ground.scale_m;
-    const auto below = static_cast<std::uint16_t>(std::clamp(std::ceil(exact) - 1.0, 0.0, 65535.0));
-    const auto above =
-        static_cast<std::uint16_t>(std::clamp(std::floor(exact) + 1.0, 0.0, 65535.0));
     for (int row = 0; row < ground.size().rows; ++row)
         for (int col = 0; col < ground.size().cols; ++col) {
             const Node at{col, row};
-            if (!lake.wet[at])
+            const unsigned lake = lake_of[at];
+            if (lake == 0)
                 continue;
-            ground.codes[at] = std::min(ground.codes[at], below);
-            each_neighbour(lake.wet, at, [&](Node n) {
-                if (!lake.wet[n] && ground.codes[n] < above) {
-                    raised += above - ground.codes[n] > 1;
-                    ground.codes[n] = above;
+            ground.codes[at] = std::min(ground.codes[at], below[lake - 1]);
+            each_neighbour(ground.size(), at, [&](Node n) {
+                if (lake_of[n] == 0 && ground.codes[n] < above[lake - 1]) {
+                    raised += above[lake - 1] - ground.codes[n] > 1;
+                    ground.codes[n] = above[lake - 1];
                 }
             });
         }
     return raised;
 }
 
-Heightfield water_surface(const Heightfield& ground, std::span<const WetLake> lakes) {
-    Heightfield water = ground;
-    std::fill(water.codes.values.begin(), water.codes.values.end(), no_water_code);
-    std::vector<double> levels;
-    for (const WetLake& lake : lakes)
-        levels.push_back(lake.level_m);
-    if (levels.empty())
-        return water;
-    choose_codes(levels, water);
-    // Dry margins first, wet nodes last: where two lakes are one node apart, neither loses water.
-    for (const bool wet_pass : {false, true})
-        for (const WetLake& lake : lakes) {
-            const auto code = static_cast<std::uint16_t>(
-                std::lround((lake.level_m - water.offset_m) / water.scale_m));
-            for (int row = 0; row < water.size().rows; ++row)
-                for (int col = 0; col < water.size().cols; ++col) {
-                    const Node at{col, row};
-                    if (!lake.wet[at])
-                        continue;
-                    if (wet_pass)
-                        water.codes[at] = code;
-                    else
-                        each_neighbour(lake.wet, at, [&](Node n) { water.codes[n] = code; });
-                }
+void pour(Heightfield& water, const LakeOf& lake_of, std::span<const double> levels) {
+    std::vector<std::uint16_t> codes;
+    for (const double level : levels)
+        codes.push_back(code_of(water, level));
+    for (int row = 0; row < water.size().rows; ++row)
+        for (int col = 0; col < water.size().cols; ++col) {
+            const Node at{col, row};
+            if (lake_of[at] == 0)
+                continue;
+            const std::uint16_t code = codes[lake_of[at] - 1u];
+            water.codes[at] = code;
+            each_neighbour(water.size(), at, [&](Node n) {
+                if (lake_of[n] == 0 &&
+                    (water.codes[n] == no_water_code || code < water.codes[n]))
+                    water.codes[n] = code;
+            });
         }
-    return water;
 }
 
 } // namespace tarn::dem

@@ -9,22 +9,32 @@
 ///         For this to hold in 16 bits, ground codes of wet nodes are rounded to BELOW the level
 ///         and those of dry nodes beside them to ABOVE it.
 #include "core/heightfield.hpp"
+#include "dem/marks.hpp"
 
 #include <span>
 
 namespace tarn::dem {
 
-struct WetLake {
-    double level_m = 0.0;
-    Grid<unsigned char> wet; ///< 1 = wet
-};
+/// An empty water heightfield on the ground's grid whose codes meet the levels best: the first
+/// (the main lake's) within half a millimetre, the others as well as 16 bits over their range can.
+Heightfield empty_water(const Heightfield& ground, std::span<const double> levels_m);
+
+/// The level that `water` holds for `level_m`.
+double drawn_level_m(const Heightfield& water, double level_m);
+
+/// Dries nodes of a lake that touch a lake of another level: between two surfaces stands land,
+/// even where the grid is too coarse to show it. Of the two, the higher lake loses its node.
+/// @return how many nodes were dried
+std::size_t part_lakes(LakeOf& lake_of, std::span<const double> levels_m);
 
 /// Rounds ground codes beside the shore to the side that the fill decided.
-/// @return the number of dry nodes that had to be raised by more than one code (no-data margins)
-std::size_t separate(Heightfield& ground, const WetLake& lake);
+/// @param levels_m  of lakes 1, 2, ... as drawn
+/// @return the number of dry nodes that had to be raised by more than one code (no-data margins,
+///         dams that the grid does not show)
+std::size_t separate(Heightfield& ground, const LakeOf& lake_of, std::span<const double> levels_m);
 
-/// The water heightfield of some lakes; levels are met within 1 mm or the closest 16 bits can do.
-/// @param ground  gives size, spacing and place
-Heightfield water_surface(const Heightfield& ground, std::span<const WetLake> lakes);
+/// Writes the lakes into `water`. A dry node between two lakes carries the lower level, so that
+/// nothing can show above the land.
+void pour(Heightfield& water, const LakeOf& lake_of, std::span<const double> levels_m);
 
 } // namespace tarn::dem

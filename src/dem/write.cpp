@@ -5,6 +5,7 @@
 #include "dem/gdal_door.hpp"
 #include "dem/mosaic.hpp"
 
+#include <limits>
 #include <ogr_spatialref.h>
 #include <ogr_srs_api.h>
 
@@ -20,6 +21,7 @@ Dataset create(const std::filesystem::path& path, GridSize size, int bands, GDAL
     CPLStringList options;
     options.SetNameValue("COMPRESS", "DEFLATE");
     options.SetNameValue("PREDICTOR", type == GDT_Float32 ? "3" : "2");
+    options.SetNameValue("ZLEVEL", "1"); // twice as fast as the default, a few percent larger
     options.SetNameValue("TILED", "YES");
     options.SetNameValue("NUM_THREADS", "ALL_CPUS");
     options.SetNameValue("BIGTIFF", "IF_SAFER");
@@ -68,6 +70,23 @@ void write_heightfield(const std::filesystem::path& path, const Heightfield& fie
     const CPLErr written = band.RasterIO(GF_Write, 0, 0, field.size().cols, field.size().rows,
                                          const_cast<std::uint16_t*>(field.codes.values.data()),
                                          field.size().cols, field.size().rows, GDT_UInt16, 0, 0);
+    finish(std::move(out), path, written, messages);
+}
+
+void write_heights(const std::filesystem::path& path, const Grid<float>& z,
+                   const Heightfield& place, const geo::Frame& frame) {
+    GdalMessages messages;
+    auto out = create(path, z.size, 1, GDT_Float32,
+                      geo_transform(frame, place.west_m, place.north_m, place.spacing_m), frame.wkt,
+                      false, messages);
+    GDALRasterBand& band = *out->GetRasterBand(1);
+    band.SetUnitType("m");
+    band.SetDescription("heights");
+    band.SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
+    const CPLErr written =
+        band.RasterIO(GF_Write, 0, 0, z.size.cols, z.size.rows,
+                      const_cast<float*>(z.values.data()), z.size.cols, z.size.rows, GDT_Float32,
+                      0, 0);
     finish(std::move(out), path, written, messages);
 }
 

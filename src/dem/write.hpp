@@ -15,6 +15,10 @@ namespace tarn::dem {
 void write_heightfield(const std::filesystem::path& path, const Heightfield& field,
                        const geo::Frame& frame, const std::string& description, bool nodata_zero);
 
+/// Float32 GeoTIFF of exact heights on the grid of `place`; NaN is declared as nodata.
+void write_heights(const std::filesystem::path& path, const Grid<float>& heights_m,
+                   const Heightfield& place, const geo::Frame& frame);
+
 void write_ortho(const std::filesystem::path& path, const Ortho& ortho, const geo::Frame& frame);
 
 /// A plain Float32 GeoTIFF of elevations in any CRS; for samples and tests.

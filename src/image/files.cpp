@@ -140,6 +140,18 @@ Grid<std::uint16_t> read_codes(const fs::path& path) {
     return out;
 }
 
+Grid<float> read_heights(const fs::path& path) {
+    auto in = open(path);
+    const OIIO::ImageSpec spec = in->spec();
+    if (spec.nchannels != 1 || spec.format != OIIO::TypeDesc::FLOAT)
+        throw Error(path.string() + ": is not a float, one-channel TIFF", "import the scene again");
+    Grid<float> out(GridSize{spec.width, spec.height});
+    if (!in->read_image(0, 0, 0, 1, OIIO::TypeDesc::FLOAT, out.values.data()))
+        throw Error(path.string() + ": is damaged (" + in->geterror() + ")",
+                    "import the scene again");
+    return out;
+}
+
 Picture read_rgba(const fs::path& path) {
     auto in = open(path);
     const OIIO::ImageSpec spec = in->spec();

@@ -54,8 +54,8 @@ std::string reason_to_keep(const fs::path& target) {
         return "exists and is not a scene folder";
     for (const auto& entry : fs::directory_iterator(target, failed)) {
         const std::string name = entry.path().filename().string();
-        static const char* ours[] = {"scene.json", "ground.tif", "water.tif", "ortho.tif",
-                                     "preview.png"};
+        static const char* ours[] = {"scene.json", "ground.tif", "water.tif",
+                                     "heights.tif", "ortho.tif", "preview.png"};
         if (std::find(std::begin(ours), std::end(ours), name) == std::end(ours))
             return "holds '" + name + "', which is not tarn's";
     }
@@ -127,6 +127,20 @@ scene::Scene load(const fs::path& folder) {
         error.during((folder / "scene.json").string());
         throw;
     }
+}
+
+Grid<float> load_heights(const fs::path& folder, const scene::Scene& scene) {
+    std::ifstream in(member(folder, "scene.json"), std::ios::binary);
+    const std::string source{std::istreambuf_iterator<char>(in), {}};
+    FileNames files;
+    from_json(source, files);
+    Grid<float> heights = image::read_heights(member(folder, files.heights));
+    if (!(heights.size == scene.ground.size()))
+        throw Error(text((folder / files.heights).string(), ": is ", heights.size.cols, " x ",
+                         heights.size.rows, ", scene.json says ", scene.ground.size().cols, " x ",
+                         scene.ground.size().rows),
+                    "import the scene again");
+    return heights;
 }
 
 StagedFolder::StagedFolder(const fs::path& target) : target_(target.lexically_normal()) {

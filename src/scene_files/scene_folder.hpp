@@ -10,6 +10,11 @@ namespace tarn::scene_files {
 ///                      scene.json says, or leading outside the folder
 scene::Scene load(const std::filesystem::path& folder);
 
+/// The exact heights that the scene's statistics count; NaN outside the data. They are not needed
+/// for drawing, so load() leaves them alone.
+/// @throws as load()
+Grid<float> load_heights(const std::filesystem::path& folder, const scene::Scene& scene);
+
 /// A folder being written beside its final name. commit() puts it in place in one step; without it
 /// the destructor removes everything that was written, and an older scene of that name stays.
 class StagedFolder {

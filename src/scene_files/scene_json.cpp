@@ -21,19 +21,31 @@ json or_null(const std::optional<T>& value) {
     return value ? json(*value) : json(nullptr);
 }
 
+json spill_json(const std::optional<LakeSpill>& spill) {
+    if (!spill)
+        return nullptr;
+    return {{"level_m", spill->level_m},
+            {"lat_deg", spill->pass.lat_deg},
+            {"lon_deg", spill->pass.lon_deg},
+            {"at_surface", spill->at_surface}};
+}
+
 json lake_json(const LakeRecord& lake) {
     return {{"id", lake.id},
             {"name", lake.name},
+            {"kind", lake.sea ? "sea" : "lake"},
             {"level_m", lake.level_m},
             {"bed", to_string(lake.bed)},
             {"area_m2", lake.area_m2},
             {"true_area_m2", lake.true_area_m2},
             {"volume_m3", or_null(lake.volume_m3)},
+            {"true_volume_m3", or_null(lake.true_volume_m3)},
             {"max_depth_m", or_null(lake.max_depth_m)},
             {"mean_depth_m", or_null(lake.mean_depth_m)},
             {"shoreline_m", lake.shoreline_m},
             {"islands", lake.islands},
             {"open_at_edge", lake.open_at_edge},
+            {"spill", spill_json(lake.spill)},
             {"flat_share", lake.flat_share},
             {"lat_deg", lake.position.lat_deg},
             {"lon_deg", lake.position.lon_deg},
@@ -126,12 +138,24 @@ LakeRecord read_lake(const Field& f, GridSize size) {
     lake.bed = bed_from_string(f["bed"].string());
     lake.area_m2 = f["area_m2"].number(0, huge);
     lake.true_area_m2 = f["true_area_m2"].number(0, huge);
+    const std::string kind = f["kind"].string();
+    if (kind != "lake" && kind != "sea")
+        throw Error("kind is '" + kind + "', must be lake or sea", "import the scene again");
+    lake.sea = kind == "sea";
     lake.volume_m3 = f["volume_m3"].number_or_null(0, huge);
+    lake.true_volume_m3 = f["true_volume_m3"].number_or_null(0, huge);
     lake.max_depth_m = f["max_depth_m"].number_or_null(0, 30'000);
     lake.mean_depth_m = f["mean_depth_m"].number_or_null(0, 30'000);
     lake.shoreline_m = f["shoreline_m"].number(0, huge);
     lake.islands = f["islands"].integer(0, 2'000'000'000);
     lake.open_at_edge = f["open_at_edge"].boolean();
+    if (f.has("spill")) {
+        const Field spill = f["spill"];
+        lake.spill = LakeSpill{.level_m = spill["level_m"].number(-12'000, 12'000),
+                               .pass = {spill["lat_deg"].number(-90, 90),
+                                        spill["lon_deg"].number(-540, 540)},
+                               .at_surface = spill["at_surface"].boolean()};
+    }
     lake.flat_share = f["flat_share"].number(0, 1);
     lake.position = {f["lat_deg"].number(-90, 90), f["lon_deg"].number(-540, 540)};
     f["seed_node"].array_size(2, 2);
@@ -209,7 +233,57 @@ geo::Frame read_frame(const Field& f) {
     return frame;
 }
 
+json report_json(const ImportReport& r) {
+    json inputs = json::array();
+    for (const ImportInput& in : r.inputs)
+        inputs.push_back({{"name", in.name},
+                          {"role", in.role},
+                          {"format", in.format},
+                          {"crs", in.crs},
+                          {"vertical_datum", in.vertical},
+                          {"size", in.size},
+                          {"crc32", in.checksum}});
+    return {{"command", r.command},
+            {"created", r.created},
+            {"tarn_version", r.tarn_version},
+            {"inputs", inputs},
+            {"resampling", r.resampling},
+            {"nodes", r.nodes},
+            {"void_nodes", r.void_nodes},
+            {"filled_nodes", r.filled_nodes},
+            {"outside_nodes", r.outside_nodes},
+            {"flat_share", r.flat_share},
+            {"notes", r.notes}};
+}
+
 } // namespace
+
+std::string detection_json(const std::vector<LakeRecord>& lakes, const ImportReport& report) {
+    json out = {{"lakes", json::array()}, {"import", report_json(report)}};
+    for (const LakeRecord& lake : lakes)
+        out["lakes"].push_back(lake_json(lake));
+    return out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+std::string stages_json(const LakeRecord& lake, const std::optional<LakeSpill>& spill,
+                        const std::vector<StageRow>& rows) {
+    json out = {{"lake", lake_json(lake)},
+                {"spill", spill_json(spill)},
+                {"stages", json::array()}};
+    for (const StageRow& r : rows)
+        out["stages"].push_back({{"level_m", r.level_m},
+                                 {"area_m2", r.area_m2},
+                                 {"true_area_m2", r.true_area_m2},
+                                 {"volume_m3", or_null(r.volume_m3)},
+                                 {"true_volume_m3", or_null(r.true_volume_m3)},
+                                 {"max_depth_m", or_null(r.max_depth_m)},
+                                 {"mean_depth_m", or_null(r.mean_depth_m)},
+                                 {"shoreline_m", r.shoreline_m},
+                                 {"islands", r.islands},
+                                 {"pools", r.pools},
+                                 {"open_at_edge", r.open_at_edge}});
+    return out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
 
 std::string to_json(const scene::Scene& scene, const FileNames& files) {
     const geo::Frame& f = scene.frame;
@@ -233,7 +307,7 @@ std::string to_json(const scene::Scene& scene, const FileNames& files) {
     const auto heights = [](const Heightfield& h, const std::string& file) {
         return json{{"file", file}, {"offset_m", h.offset_m}, {"scale_m", h.scale_m}};
     };
-    json lakes = json::array(), cameras = json::array(), inputs = json::array();
+    json lakes = json::array(), cameras = json::array();
     for (const LakeRecord& lake : scene.lakes)
         lakes.push_back(lake_json(lake));
     for (const scene::NamedCamera& c : scene.cameras)
@@ -242,15 +316,6 @@ std::string to_json(const scene::Scene& scene, const FileNames& files) {
                            {"direction", vector_of(c.camera.forward)},
                            {"up", vector_of(c.camera.up)},
                            {"fov_deg", c.camera.fov_deg}});
-    for (const ImportInput& in : scene.report.inputs)
-        inputs.push_back({{"name", in.name},
-                          {"role", in.role},
-                          {"format", in.format},
-                          {"crs", in.crs},
-                          {"vertical_datum", in.vertical},
-                          {"size", in.size},
-                          {"crc32", in.checksum}});
-    const ImportReport& r = scene.report;
     json out = {
         {"format", "tarn scene"},
         {"version", schema_version},
@@ -263,6 +328,7 @@ std::string to_json(const scene::Scene& scene, const FileNames& files) {
           {"north_m", scene.ground.north_m}}},
         {"ground", heights(scene.ground, files.ground)},
         {"water", heights(scene.water, files.water)},
+        {"heights", {{"file", files.heights}}},
         {"lakes", lakes},
         {"optics",
          {{"name", scene.optics.name},
@@ -279,17 +345,7 @@ std::string to_json(const scene::Scene& scene, const FileNames& files) {
                         {"west_m", scene.ortho->west_m},
                         {"north_m", scene.ortho->north_m},
                         {"spacing_m", scene.ortho->spacing_m}};
-    out["import"] = {{"command", r.command},
-                     {"created", r.created},
-                     {"tarn_version", r.tarn_version},
-                     {"inputs", inputs},
-                     {"resampling", r.resampling},
-                     {"nodes", r.nodes},
-                     {"void_nodes", r.void_nodes},
-                     {"filled_nodes", r.filled_nodes},
-                     {"outside_nodes", r.outside_nodes},
-                     {"flat_share", r.flat_share},
-                     {"notes", r.notes}};
+    out["import"] = report_json(scene.report);
     return out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
@@ -317,6 +373,7 @@ scene::Scene from_json(const std::string& source, FileNames& files) {
     read_heights(root["water"], grid, size, scene.water);
     files.ground = root["ground"]["file"].file_name();
     files.water = root["water"]["file"].file_name();
+    files.heights = root["heights"]["file"].file_name();
     const Field lakes = root["lakes"];
     for (std::size_t i = 0, n = lakes.array_size(1, 100'000); i < n; ++i)
         scene.lakes.push_back(read_lake(lakes.at(i), size));

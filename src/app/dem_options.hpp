@@ -1,0 +1,23 @@
+#pragma once
+/// @file dem_options.hpp  The options about elevation data that import and detect share.
+#include "dem/import.hpp"
+
+#include <CLI/App.hpp>
+#include <string>
+#include <vector>
+
+namespace tarn::app {
+
+struct DemWords {
+    dem::ImportOptions options;
+    std::vector<std::string> dems;
+    std::string at, bounds, nodata;
+};
+
+void add_dem_options(CLI::App& command, DemWords& words);
+
+/// Turns the words into options, after parsing.
+/// @throws tarn::Error  naming the option
+void read_dem_words(DemWords& words);
+
+} // namespace tarn::app

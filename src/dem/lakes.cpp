@@ -1,0 +1,314 @@
+#include "dem/lakes.hpp"
+
+#include "core/text.hpp"
+#include "dem/fill.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tarn::dem {
+
+namespace {
+
+// What lies this much below a surface that runs out is the valley below its dam, not its bed.
+constexpr double dam_m = 1.0;
+constexpr int bay_reach = 6; // nodes between a lake and a patch of its level that is its bay
+
+std::vector<Run> runs_of(std::vector<Node> nodes) {
+    std::sort(nodes.begin(), nodes.end(), [](Node a, Node b) {
+        return a.row != b.row ? a.row < b.row : a.col < b.col;
+    });
+    std::vector<Run> out;
+    for (const Node n : nodes)
+        if (!out.empty() && out.back().row == n.row && out.back().last + 1 == n.col)
+            ++out.back().last;
+        else
+            out.push_back({n.row, n.col, n.col});
+    return out;
+}
+
+float median(std::vector<float>& values) {
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+FlatSurface surface_of(const std::vector<Node>& nodes, float level_m) {
+    FlatSurface out;
+    out.level_m = level_m;
+    out.nodes = nodes.size();
+    out.runs = runs_of(nodes);
+    const Run& run = *std::max_element(
+        out.runs.begin(), out.runs.end(),
+        [](const Run& a, const Run& b) { return a.last - a.first < b.last - b.first; });
+    out.middle = {(run.first + run.last) / 2, run.row};
+    return out;
+}
+
+template <class Visit>
+void each_node(const FlatSurface& surface, Visit visit) {
+    for (const Run& run : surface.runs)
+        for (int col = run.first; col <= run.last; ++col)
+            visit(Node{col, run.row});
+}
+
+/// Water without returns leaves voids; then their rim is the shore, all at one height. (Voids of
+/// radar shadow lie in steep ground: hardly any two of their neighbours agree.)
+void void_water(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
+                std::vector<std::string>& notes) {
+    constexpr float even_m = 0.5f;
+    constexpr std::size_t least = 40;
+    std::size_t lakes = 0, nodes_all = 0;
+    std::vector<FlatSurface> found;
+    for (int row = 0; row < z.size.rows; ++row)
+        for (int col = 0; col < z.size.cols; ++col) {
+            const Node start{col, row};
+            if (!(marks[start] & mark::filled) || (marks[start] & mark::seen))
+                continue;
+            std::vector<Node> nodes{start};
+            std::vector<float> rim;
+            bool at_edge = false;
+            marks[start] |= mark::seen;
+            search<4>(
+                z.size, {start},
+                [&](Node n) {
+                    if (marks[n] & mark::outside)
+                        at_edge = true;
+                    else if (!(marks[n] & mark::filled))
+                        rim.push_back(z[n]);
+                    if (!(marks[n] & mark::filled) || (marks[n] & mark::seen))
+                        return false;
+                    marks[n] |= mark::seen;
+                    nodes.push_back(n);
+                    return true;
+                },
+                [&](Node) { at_edge = true; });
+            if (nodes.size() < least || rim.empty() || at_edge)
+                continue;
+            std::sort(rim.begin(), rim.end());
+            const float low = rim[rim.size() / 20];
+            const auto even = std::count_if(rim.begin(), rim.end(), [&](float v) {
+                return std::abs(v - low) <= even_m;
+            });
+            if (double(even) < 0.6 * double(rim.size()))
+                continue;
+            // The water stands at the lowest of its banks, but for a stray low one.
+            found.push_back(
+                surface_of(nodes, low - rim.front() > even_m ? low : rim.front()));
+            ++lakes;
+            nodes_all += nodes.size();
+        }
+    clear(marks, mark::seen);
+    for (FlatSurface& surface : found) {
+        each_node(surface, [&](Node n) {
+            z[n] = surface.level_m;
+            marks[n] |= mark::flat;
+        });
+        surfaces.push_back(std::move(surface));
+    }
+    if (lakes > 0)
+        notes.push_back(text(lakes, " voids with an even rim (", nodes_all,
+                             " nodes) taken for water at the height of that rim"));
+}
+
+/// Surfaces flattened tile by tile or along a river are not exactly flat: they step at seams and
+/// slope by centimetres. Nodes whose neighbourhood is level within `even_m` are gathered.
+void ramps(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
+           std::vector<std::string>& notes) {
+    constexpr float even_m = 0.03f, seam_m = 0.5f;
+    constexpr std::size_t least = 64;
+    // Whole metres or other steps: exact equality says all there is.
+    std::size_t equal = 0, pairs = 0;
+    for (int row = 0; row < z.size.rows; row += 7)
+        for (int col = 0; col + 1 < z.size.cols; ++col)
+            if (!(marks[{col, row}] & (mark::flat | mark::filled | mark::outside))) {
+                ++pairs;
+                equal += z[{col, row}] == z[{col + 1, row}];
+            }
+    if (pairs == 0 || double(equal) > 0.02 * double(pairs))
+        return;
+    const auto even = [&](Node n) {
+        if (marks[n] & (mark::flat | mark::filled | mark::outside))
+            return false;
+        float low = z[n], high = z[n];
+        bool inside = n.col > 0 && n.row > 0 && n.col + 1 < z.size.cols && n.row + 1 < z.size.rows;
+        each_neighbour(z.size, n, [&](Node m) {
+            inside &= !(marks[m] & (mark::flat | mark::filled | mark::outside));
+            low = std::min(low, z[m]);
+            high = std::max(high, z[m]);
+        });
+        return inside && high - low <= even_m;
+    };
+    std::vector<FlatSurface> found;
+    for (int row = 0; row < z.size.rows; ++row)
+        for (int col = 0; col < z.size.cols; ++col) {
+            const Node start{col, row};
+            if ((marks[start] & mark::seen) || !even(start))
+                continue;
+            std::vector<Node> nodes{start};
+            marks[start] |= mark::seen;
+            search<8>(
+                z.size, {start},
+                [&](Node n) {
+                    if ((marks[n] & mark::seen) || !even(n))
+                        return false;
+                    marks[n] |= mark::seen;
+                    nodes.push_back(n);
+                    return true;
+                },
+                [](Node) {});
+            if (nodes.size() < least)
+                continue;
+            std::vector<float> heights;
+            for (const Node n : nodes)
+                heights.push_back(z[n]);
+            const float level = median(heights);
+            std::size_t lower = 0, higher = 0, off = 0;
+            for (const Node n : nodes) {
+                off += std::abs(z[n] - level) > seam_m;
+                each_neighbour(z.size, n, [&](Node m) {
+                    if (marks[m] & mark::seen)
+                        return;
+                    lower += z[m] < level - even_m;
+                    higher += z[m] > level + even_m;
+                });
+            }
+            if (off == 0 && 4 * lower <= lower + higher)
+                found.push_back(surface_of(nodes, level));
+        }
+    clear(marks, mark::seen);
+    std::size_t nodes_all = 0;
+    float most = 0.0f;
+    for (FlatSurface& surface : found) {
+        // A ramp beside a flat surface of nearly its height is that lake's (a seam, a slope).
+        for (const FlatSurface& flat : surfaces)
+            if (std::abs(flat.level_m - surface.level_m) <= seam_m) {
+                bool beside = false;
+                each_node(surface, [&](Node n) {
+                    for (int dr = -2; dr <= 2; ++dr)
+                        for (int dc = -2; dc <= 2; ++dc) {
+                            const Node m{n.col + dc, n.row + dr};
+                            beside |= z.contains(m) && (marks[m] & mark::flat) &&
+                                      z[m] == flat.level_m;
+                        }
+                });
+                if (beside) {
+                    surface.level_m = flat.level_m;
+                    break;
+                }
+            }
+        each_node(surface, [&](Node n) {
+            most = std::max(most, std::abs(z[n] - surface.level_m));
+            z[n] = surface.level_m;
+            ++nodes_all;
+        });
+    }
+    for (FlatSurface& surface : found) { // marks only now: surfaces do not see each other
+        each_node(surface, [&](Node n) { marks[n] |= mark::flat; });
+        surfaces.push_back(std::move(surface));
+    }
+    if (!found.empty())
+        notes.push_back(text(found.size(), " water surfaces that slope or step by centimetres (",
+                             nodes_all, " nodes) were laid level, by at most ", fixed(most, 2),
+                             " m"));
+}
+
+bool near_lake(const LakeOf& lake_of, const FlatSurface& surface, int id) {
+    for (const Run& run : surface.runs)
+        for (int row = std::max(run.row - bay_reach, 0);
+             row <= std::min(run.row + bay_reach, lake_of.size.rows - 1); ++row)
+            for (int col = std::max(run.first - bay_reach, 0);
+                 col <= std::min(run.last + bay_reach, lake_of.size.cols - 1); ++col)
+                if (lake_of[{col, row}] == id)
+                    return true;
+    return false;
+}
+
+} // namespace
+
+std::vector<FlatSurface> complete_surfaces(Grid<float>& z, Marks& marks,
+                                           std::vector<FlatSurface> surfaces,
+                                           std::vector<std::string>& notes) {
+    for (const FlatSurface& surface : surfaces)
+        each_node(surface, [&](Node n) { marks[n] |= mark::flat; });
+    void_water(z, marks, surfaces, notes);
+    ramps(z, marks, surfaces, notes);
+    std::stable_sort(
+        surfaces.begin(), surfaces.end(),
+        [](const FlatSurface& a, const FlatSurface& b) { return a.nodes > b.nodes; });
+    return surfaces;
+}
+
+bool has_surface(const std::vector<FlatSurface>& surfaces, double level_m) {
+    return std::any_of(surfaces.begin(), surfaces.end(), [&](const FlatSurface& s) {
+        return s.level_m == static_cast<float>(level_m);
+    });
+}
+
+FoundLake fill_surface(const LakeSearch& s, const FlatSurface& surface, int id) {
+    FoundLake lake{.id = id, .level_m = surface.level_m, .seeds = {surface.middle}};
+    const float level = surface.level_m;
+    lake.sea = surface.touches_edge && std::abs(level) <= 2.0f;
+    const bool runs_out =
+        !lake.sea && find_spill(s.elevation_m, s.marks, surface.middle, level).has_value();
+    // Water that leaves the data without rising found a hole in a dam or an outlet, or the edge
+    // cuts the lake.
+    const double floor_m =
+        runs_out ? level - dam_m : -std::numeric_limits<double>::infinity();
+    Filled filled = fill_from(s.elevation_m, s.marks, level, lake.seeds, id, s.lake_of, floor_m);
+    // In whole-metre models a metre can be all that tells a small reservoir from its valley: then
+    // the surface alone is taken.
+    if (runs_out && 2 * filled.at_level < filled.nodes && 2 * surface.nodes > filled.at_level) {
+        drain(s.lake_of, lake.seeds);
+        filled = fill_from(s.elevation_m, s.marks, level, lake.seeds, id, s.lake_of, level);
+    }
+    lake.nodes = filled.nodes;
+    lake.open_at_edge = filled.open_at_edge;
+    // Mostly surface: the lake ends where the flat ends. Else the surface is only the rim of a lake
+    // whose bed the data hold and cut, or a terrace on a slope and no lake at all.
+    if (runs_out && 2 * surface.nodes < filled.at_level) {
+        drain(s.lake_of, lake.seeds);
+        lake.nodes = 0;
+    }
+    return lake;
+}
+
+void join_bays(const LakeSearch& s, const std::vector<FlatSurface>& surfaces, FoundLake& lake) {
+    for (const FlatSurface& surface : surfaces) {
+        if (surface.level_m != static_cast<float>(lake.level_m) || s.lake_of[surface.middle] != 0 ||
+            !near_lake(s.lake_of, surface, lake.id))
+            continue;
+        const Node seed[] = {surface.middle};
+        const Filled bay = fill_from(s.elevation_m, s.marks, surface.level_m, seed, lake.id,
+                                     s.lake_of, surface.level_m - dam_m);
+        lake.nodes += bay.nodes;
+        lake.open_at_edge |= bay.open_at_edge;
+        lake.seeds.push_back(surface.middle);
+    }
+}
+
+std::vector<FoundLake> find_lakes(const LakeSearch& s, const std::vector<FlatSurface>& surfaces,
+                                  int first_id) {
+    std::vector<FoundLake> out;
+    int id = first_id;
+    for (const FlatSurface& surface : surfaces) {
+        if (out.size() >= s.most_lakes)
+            break;
+        if (s.lake_of[surface.middle] != 0)
+            continue;
+        FoundLake lake = fill_surface(s, surface, id);
+        if (lake.nodes == 0)
+            continue;
+        join_bays(s, surfaces, lake);
+        if (lake.nodes < s.least_nodes) {
+            drain(s.lake_of, lake.seeds);
+            continue;
+        }
+        out.push_back(std::move(lake));
+        ++id;
+    }
+    return out;
+}
+
+} // namespace tarn::dem
