@@ -221,31 +221,46 @@ std::size_t make_room(Heightfield& ground, const LakeOf& lake_of, const Marks& m
                       std::span<const double> levels_m) {
     constexpr double nominal_m = 5.0;
     std::size_t lowered = 0;
-    for (int row = 0; row < ground.size().rows; ++row)
-        for (int col = 0; col < ground.size().cols; ++col) {
-            const Node at{col, row};
-            const int id = lake_of[at];
-            if (id == 0 || std::isnan(levels_m[std::size_t(id - 1)]) ||
-                !(marks[at] & (mark::flat | mark::filled)))
-                continue;
-            const double level_m = levels_m[std::size_t(id - 1)];
-            double depth = nominal_m, sum = 0.0, weight = 0.0;
-            each_neighbour(ground.size(), at, [&](Node n) {
-                if (lake_of[n] != 0) // dry land only: it keeps its heights here
-                    return;
-                const double w = (n.row == at.row || n.col == at.col) ? 1.0 : 0.25;
-                sum += w * std::max(ground.elevation_m(n) - level_m, 0.0);
-                weight += w;
-            });
-            if (weight > 0.0)
-                depth = std::clamp(sum / weight, 0.05, greatest_room_m);
-            const double code = std::floor((level_m - depth - ground.offset_m) / ground.scale_m);
-            const auto floor_code = static_cast<std::uint16_t>(std::clamp(code, 0.0, 65535.0));
-            if (ground.codes[at] > floor_code) {
-                ground.codes[at] = floor_code;
-                ++lowered;
-            }
+    const auto known = [&](std::size_t i) {
+        return std::isnan(levels_m[lake_of.values[i] - 1u]) ||
+               !(marks.values[i] & (mark::flat | mark::filled));
+    };
+    const auto code_at = [&](double height_m) {
+        const double code = std::floor((height_m - ground.offset_m) / ground.scale_m);
+        return static_cast<std::uint16_t>(std::clamp(code, 0.0, 65535.0));
+    };
+    // Rim nodes get their depth from the land beside them, which keeps its heights here; they are
+    // put on record first, for inside all the others follow.
+    std::vector<std::pair<std::size_t, std::uint16_t>> rim;
+    each_shore_node(lake_of, [&](Node at) {
+        const std::size_t i = lake_of.index(at);
+        if (known(i))
+            return;
+        const double level_m = levels_m[lake_of.values[i] - 1u];
+        double sum = 0.0, weight = 0.0;
+        each_neighbour(ground.size(), at, [&](Node n) {
+            if (lake_of[n] != 0)
+                return;
+            const double w = (n.row == at.row || n.col == at.col) ? 1.0 : 0.25;
+            sum += w * std::max(ground.elevation_m(n) - level_m, 0.0);
+            weight += w;
+        });
+        if (weight > 0.0)
+            rim.emplace_back(
+                i, std::min(ground.codes.values[i],
+                            code_at(level_m - std::clamp(sum / weight, 0.05, greatest_room_m))));
+    });
+    std::vector<std::uint16_t> floors;
+    for (const double level_m : levels_m)
+        floors.push_back(std::isnan(level_m) ? std::uint16_t{0} : code_at(level_m - nominal_m));
+    for (std::size_t i = 0; i < lake_of.values.size(); ++i)
+        if (lake_of.values[i] != 0 && !known(i) &&
+            ground.codes.values[i] > floors[lake_of.values[i] - 1u]) {
+            ground.codes.values[i] = floors[lake_of.values[i] - 1u];
+            ++lowered;
         }
+    for (const auto& [i, code] : rim)
+        ground.codes.values[i] = code;
     return lowered;
 }
 

@@ -9,6 +9,16 @@
 
 namespace tarn::dem {
 
+namespace {
+
+struct Step {
+    float elevation_m;
+    Node at;
+    bool operator<(const Step& other) const { return elevation_m > other.elevation_m; }
+};
+
+} // namespace
+
 Filled fill_from(const Grid<float>& z, const Marks& marks, float highest_wet_m,
                  std::span<const Node> seeds, int id, LakeOf& lake_of, double floor_m) {
     Filled out;
@@ -42,6 +52,52 @@ Filled fill_from(const Grid<float>& z, const Marks& marks, float highest_wet_m,
             return true;
         },
         [&](Node) { out.open_at_edge = true; });
+    return out;
+}
+
+std::optional<Filled> fill_closed(const Grid<float>& z, const Marks& marks, float highest_wet_m,
+                                  Node seed, int id, LakeOf& lake_of) {
+    Filled out;
+    std::priority_queue<Step> downhill; // nodes below the surface, the lowest first
+    std::vector<Node> surface, next;    // nodes at it, in any order
+    bool open = false;
+    const auto enter = [&](Node n) {
+        lake_of[n] = static_cast<std::uint16_t>(id);
+        ++out.nodes;
+        if (z[n] == highest_wet_m) {
+            ++out.at_level;
+            next.push_back(n);
+        } else {
+            downhill.push({z[n], n});
+        }
+    };
+    const auto spread = [&](Node at) {
+        for (int dr = -1; dr <= 1; ++dr)
+            for (int dc = -1; dc <= 1; ++dc) {
+                const Node n{at.col + dc, at.row + dr};
+                if (!z.contains(n) || (marks[n] & mark::outside))
+                    open = true;
+                else if (lake_of[n] == 0 && z[n] <= highest_wet_m)
+                    enter(n);
+            }
+    };
+    enter(seed);
+    while (!open && (!downhill.empty() || !next.empty())) {
+        if (!downhill.empty()) {
+            const Node at = downhill.top().at;
+            downhill.pop();
+            spread(at);
+            continue;
+        }
+        surface.swap(next);
+        next.clear();
+        for (std::size_t i = 0; i < surface.size() && !open; ++i)
+            spread(surface[i]);
+    }
+    if (open) {
+        drain(lake_of, std::span(&seed, 1));
+        return {};
+    }
     return out;
 }
 
@@ -126,12 +182,6 @@ std::optional<Node> nearest_wet(const Grid<float>& z, const Marks& marks, float 
 }
 
 namespace {
-
-struct Step {
-    float elevation_m;
-    Node at;
-    bool operator<(const Step& other) const { return elevation_m > other.elevation_m; }
-};
 
 /// @param touched  nodes marked as seen so far; all marks are taken off again at the end
 std::optional<Spill> rise(const Grid<float>& z, Marks& marks, std::priority_queue<Step> rim,

@@ -59,7 +59,7 @@ void register_drivers() {
         CPLSetConfigOption("GDAL_PAM_ENABLED", "NO"); // leave no .aux.xml beside users' files
         // GDAL would keep a twentieth of all memory in blocks; streaming needs far less.
         if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr))
-            GDALSetCacheMax64(GIntBig(192) << 20);
+            GDALSetCacheMax64(GIntBig(64) << 20);
     });
 }
 

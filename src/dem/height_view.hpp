@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <memory>
+#include <ogr_spatialref.h>
 #include <optional>
 #include <vector>
 
@@ -29,5 +30,20 @@ struct HeightFindings {
 /// voids: no place on Earth reaches them, lost nodata tags do.
 Dataset view_heights(GDALDataset& source, int band, HeightRule rule,
                      std::shared_ptr<HeightFindings> findings);
+
+/// Says whether NaN is declared as nodata (it is until told otherwise). GDAL warps much faster if
+/// it need not look for voids; tell it so only if there are none.
+void declare_voids(GDALDataset& view, bool declared);
+
+/// A tile within a joined raster: where its first pixel lies.
+struct JoinedTile {
+    GDALDataset* raster; ///< a view as above; outlives the joined raster
+    int col, row;
+};
+
+/// Tiles of one grid (same spacing, whole pixels apart) as one raster, read as it is asked for;
+/// where they overlap the last one that has a height counts.
+Dataset join_views(std::vector<JoinedTile> tiles, const GeoTransform& transform, GridSize size,
+                   const OGRSpatialReference& crs);
 
 } // namespace tarn::dem

@@ -141,9 +141,12 @@ void ramps(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
         return inside && high - low <= even_m;
     };
     std::vector<FlatSurface> found;
-    for (int row = 0; row < z.size.rows; ++row)
-        for (int col = 0; col < z.size.cols; ++col) {
+    for (int row = 1; row + 1 < z.size.rows; ++row)
+        for (int col = 1; col + 1 < z.size.cols; ++col) {
             const Node start{col, row};
+            const float* here = &z.values[z.index(start)];
+            if (!(std::abs(here[0] - here[1]) <= even_m && std::abs(here[0] - here[-1]) <= even_m))
+                continue; // most land ends here
             if ((marks[start] & mark::seen) || !even(start))
                 continue;
             std::vector<Node> nodes{start};
@@ -250,13 +253,18 @@ FoundLake fill_surface(const LakeSearch& s, const FlatSurface& surface, int id) 
     FoundLake lake{.id = id, .level_m = surface.level_m, .seeds = {surface.middle}};
     const float level = surface.level_m;
     lake.sea = surface.touches_edge && std::abs(level) <= 2.0f;
-    const bool runs_out =
-        !lake.sea && find_spill(s.elevation_m, s.marks, surface.middle, level).has_value();
     // Water that leaves the data without rising found a hole in a dam or an outlet, or the edge
     // cuts the lake.
-    const double floor_m =
-        runs_out ? level - dam_m : -std::numeric_limits<double>::infinity();
-    Filled filled = fill_from(s.elevation_m, s.marks, level, lake.seeds, id, s.lake_of, floor_m);
+    const auto closed = lake.sea ? std::nullopt
+                                 : fill_closed(s.elevation_m, s.marks, level, surface.middle, id,
+                                               s.lake_of);
+    const bool runs_out = !lake.sea && !closed;
+    Filled filled;
+    if (closed)
+        filled = *closed;
+    else
+        filled = fill_from(s.elevation_m, s.marks, level, lake.seeds, id, s.lake_of,
+                           lake.sea ? -std::numeric_limits<double>::infinity() : level - dam_m);
     // In whole-metre models a metre can be all that tells a small reservoir from its valley: then
     // the surface alone is taken.
     if (runs_out && 2 * filled.at_level < filled.nodes && 2 * surface.nodes > filled.at_level) {

@@ -60,4 +60,26 @@ void each_neighbour(GridSize size, Node at, Visit visit) {
         }
 }
 
+/// Calls visit(node) for every wet node that has a neighbour (of 8) which is not of its lake.
+template <class Visit>
+void each_shore_node(const LakeOf& lake_of, Visit visit) {
+    const int cols = lake_of.size.cols, rows = lake_of.size.rows;
+    for (int row = 0; row < rows; ++row) {
+        const std::uint16_t* here = &lake_of.values[lake_of.index({0, row})];
+        const std::uint16_t* above = row > 0 ? here - cols : here;
+        const std::uint16_t* below = row + 1 < rows ? here + cols : here;
+        for (int col = 0; col < cols; ++col) {
+            const unsigned id = here[col];
+            if (id == 0)
+                continue;
+            const int l = col > 0 ? col - 1 : col, r = col + 1 < cols ? col + 1 : col;
+            const unsigned differ = (above[l] ^ id) | (above[col] ^ id) | (above[r] ^ id) |
+                                    (here[l] ^ id) | (here[r] ^ id) | (below[l] ^ id) |
+                                    (below[col] ^ id) | (below[r] ^ id);
+            if (differ != 0)
+                visit(Node{col, row});
+        }
+    }
+}
+
 } // namespace tarn::dem

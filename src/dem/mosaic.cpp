@@ -82,23 +82,31 @@ bool in_phase(const Source& a, const Source& b) {
 }
 
 Dataset join(const std::vector<Source*>& tiles) {
-    GdalMessages messages;
-    std::vector<GDALDatasetH> handles;
+    const double* first = tiles.front()->transform.v;
+    std::vector<JoinedTile> parts;
+    long left = 0, top = 0, right = 0, bottom = 0; // in pixels of the first tile
     for (const Source* tile : tiles) {
-        // GDAL would leave out tiles whose vertical datum is declared differently.
-        const OGRSpatialReference plane = horizontal(tile->crs);
-        tile->raster->SetSpatialRef(&plane);
-        handles.push_back(GDALDataset::ToHandle(tile->raster.get()));
+        const double* g = tile->transform.v;
+        const long col = std::lround((g[0] - first[0]) / first[1]);
+        const long row = std::lround((g[3] - first[3]) / first[5]);
+        left = std::min(left, col);
+        top = std::min(top, row);
+        right = std::max(right, col + tile->cols);
+        bottom = std::max(bottom, row + tile->rows);
+        if (right - left > 2'000'000'000L || bottom - top > 2'000'000'000L)
+            throw Error(tile->name + ": lies too far from the other tiles to be joined",
+                        "import tiles that belong together");
+        parts.push_back({tile->raster.get(), int(col), int(row)});
     }
-    Arguments arguments{"-vrtnodata", "nan"};
-    GDALBuildVRTOptions* options = GDALBuildVRTOptionsNew(arguments.get(), nullptr);
-    Dataset vrt(GDALDataset::FromHandle(
-        GDALBuildVRT("", int(handles.size()), handles.data(), nullptr, options, nullptr)));
-    GDALBuildVRTOptionsFree(options);
-    if (!vrt || messages.warned()) // a warning means a tile left out
-        throw Error("the tiles cannot be joined (" + messages.last() + ")",
-                    "check with gdalinfo that they belong together");
-    return vrt;
+    for (JoinedTile& part : parts) {
+        part.col -= int(left);
+        part.row -= int(top);
+    }
+    GeoTransform transform = tiles.front()->transform;
+    transform.v[0] += double(left) * first[1];
+    transform.v[3] += double(top) * first[5];
+    return join_views(std::move(parts), transform, {int(right - left), int(bottom - top)},
+                      horizontal(tiles.front()->crs));
 }
 
 /// Reads a window of band 1; outside the raster and on nodata: NaN.
@@ -143,7 +151,8 @@ Grid<float> warp(const std::vector<GDALDataset*>& inputs, const Target& target,
     GeoTransform transform = target.transform();
     onto->SetGeoTransform(transform.v);
     onto->SetSpatialRef(&crs);
-    onto->GetRasterBand(1)->SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
+    // No nodata is declared for the target: it begins as NaN and stays so where nothing is written,
+    // and GDAL keeps to its quick kernels if the sources have no voids either.
     Arguments arguments{"-r", resampling, "-et", "0.02", "-wo", "NUM_THREADS=ALL_CPUS",
                         "-novshiftgrid"};
     GDALWarpAppOptions* options = GDALWarpAppOptionsNew(arguments.get(), nullptr);
@@ -247,6 +256,7 @@ constexpr int cubic_reach = 4; // nodes: two source cells at half their spacing
 /// Flat surfaces of one source grid, to be asked by pixel.
 class FlatRows {
 public:
+    FlatRows() = default;
     FlatRows(std::vector<FlatSurface> flats, int first_col, int first_row, int rows)
         : flats_(std::move(flats)), first_col_(first_col), first_row_(first_row),
           rows_(std::size_t(rows)) {
@@ -278,16 +288,21 @@ private:
         int first, last, flat;
     };
     std::vector<FlatSurface> flats_;
-    int first_col_, first_row_;
+    int first_col_ = 0, first_row_ = 0;
     std::vector<std::vector<Span>> rows_;
 };
 
 /// Searches the part of a source that the scene uses, a few rows at a time.
-FlatRows find_source_flats(GDALDataset& ds, int c0, int r0, int c1, int r1) {
+/// @param voids  set if a node without data was met
+FlatRows find_source_flats(GDALDataset& ds, int c0, int r0, int c1, int r1, bool& voids) {
     FlatFinder finder(c1 - c0);
     constexpr int strip = 64;
     for (int row = r0; row < r1; row += strip) {
         const Grid<float> part = read_window(ds, c0, row, {c1 - c0, std::min(strip, r1 - row)});
+        float sum = 0.0f; // NaN if any height is
+        for (const float z : part.values)
+            sum += z * 0.0f;
+        voids |= std::isnan(sum);
         for (int r = 0; r < part.size.rows; ++r)
             finder.add_row(std::span(part.values)
                                .subspan(part.index({0, r}), std::size_t(part.size.cols)));
@@ -320,20 +335,19 @@ public:
     PixelMap(const PixelMap&) = delete;
     PixelMap& operator=(const PixelMap&) = delete;
 
-    /// Source coordinates [pixels] of the target's pixel centres in a row; NaN where there are
+    /// Source coordinates [pixels] of some target pixels' centres in a row; NaN where there are
     /// none.
     struct Row {
         std::vector<double> x, y;
     };
-    void row(int row, int cols, Row& out) {
+    void row(int row, int col, int cols, Row& out) {
         const auto n = std::size_t(cols);
         out.x.resize(n);
         out.y.assign(n, row + 0.5);
         z_.assign(n, 0.0);
         good_.assign(n, 0);
         for (std::size_t i = 0; i < n; ++i)
-            out.x[i] = double(i) + 0.5;
-        GdalMessages quiet;
+            out.x[i] = col + double(i) + 0.5;
         GDALApproxTransform(quick_, TRUE, cols, out.x.data(), out.y.data(), z_.data(),
                             good_.data());
         for (std::size_t i = 0; i < n; ++i)
@@ -365,69 +379,152 @@ private:
     std::vector<int> good_;
 };
 
-struct Lift {
-    Node at;
-    float to;
-};
-
-/// Puts the flat surfaces of rows [r0, r1) into a ground that cubics interpolated, and notes land
-/// beside them that a cubic pulled below their level although bilinear interpolation keeps it
-/// above: it is to be lifted, so that there are no puddles along the shore. Land that is really
-/// lower (a polder, the river below a dam) is lower in both.
-/// @param flat    levels of rows [r0 - cubic_reach, r1 + cubic_reach), NaN outside surfaces
-/// @param linear  heights of the same rows by bilinear interpolation; empty: lift nothing
-void lay_flats(Grid<float>& z, const Grid<float>& flat, const Grid<float>& linear, int r0, int r1,
-               std::vector<Lift>& lifts) {
-    const int top = r0 - cubic_reach;
-    constexpr int width = 2 * cubic_reach + 1;
-    constexpr float puddle_m = 0.01f; // pits shallower than this beside a lake are noise
-    for (int row = r0; row < r1; ++row)
-        for (int col = 0; col < z.size.cols; ++col) {
-            const Node at{col, row};
-            const float level = flat[{col, row - top}];
-            if (std::isnan(level))
-                continue;
-            z[at] = level;
-            if (linear.values.empty())
-                continue;
-            bool rim = false;
-            for (const Node n :
-                 {Node{col - 1, row}, Node{col + 1, row}, Node{col, row - 1}, Node{col, row + 1}})
-                rim |= z.contains(n) && std::isnan(flat[{n.col, n.row - top}]);
-            for (int k = 0; rim && k < width * width; ++k) {
-                const Node n{col + k % width - cubic_reach, row + k / width - cubic_reach};
-                const Node in_strip{n.col, n.row - top};
-                if (z.contains(n) && std::isnan(flat[in_strip]) && !(z[n] > level) &&
-                    linear[in_strip] >= level - puddle_m)
-                    lifts.push_back(
-                        {n, std::max(linear[in_strip],
-                                     std::nextafter(level, std::numeric_limits<float>::max()))});
-            }
-        }
-}
+constexpr int block_side = 64; // nodes; the unit in which places without water are passed over
 
 /// The surfaces of one source, and how to find them from the target.
-struct FlatLayer {
-    FlatRows flats;
-    std::unique_ptr<PixelMap> map;
-    GDALDataset* source;
-    std::unordered_map<std::size_t, int> changed; ///< node -> surface (-1: none) against "nearest"
-
-    /// Has it a height at this pixel? (Asked only where layers overlap on a surface.)
-    bool covers(int col, int row) const {
-        if (col < 0 || row < 0 || col >= source->GetRasterXSize() ||
-            row >= source->GetRasterYSize())
-            return false;
-        return !std::isnan(read_window(*source, col, row, {1, 1}).values[0]);
+class FlatLayer {
+public:
+    FlatLayer(GDALDataset& source, const OGRSpatialReference& crs, const Target& target,
+              bool& voids)
+        : source_(source) {
+        source.GetGeoTransform(transform_.v);
+        map_ = std::make_unique<PixelMap>(crs, transform_.v, target);
+        OGRSpatialReference local;
+        local.SetFromUserInput(target.wkt.c_str());
+        local.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+        // Only the part that the scene uses is read.
+        auto back = between(local, crs);
+        const Extent used = image_of(target.box, *back, "scene");
+        const double* g = transform_.v;
+        int c0 = 0, r0 = 0, c1 = source.GetRasterXSize(), r1 = source.GetRasterYSize();
+        if (g[2] == 0.0 && g[4] == 0.0) {
+            const double ca = (used.west - g[0]) / g[1], cb = (used.east - g[0]) / g[1];
+            const double ra = (used.south - g[3]) / g[5], rb = (used.north - g[3]) / g[5];
+            const auto pixel = [](double v) { return int(std::clamp(v, -1e9, 1e9)); };
+            c0 = std::max(c0, pixel(std::floor(std::min(ca, cb))) - 2);
+            c1 = std::min(c1, pixel(std::ceil(std::max(ca, cb))) + 2);
+            r0 = std::max(r0, pixel(std::floor(std::min(ra, rb))) - 2);
+            r1 = std::min(r1, pixel(std::ceil(std::max(ra, rb))) + 2);
+        }
+        if (c0 < c1 && r0 < r1)
+            flats_ = find_source_flats(source, c0, r0, c1, r1, voids);
+        find_blocks(target);
     }
+
+    const std::vector<FlatSurface>& flats() const { return flats_.flats(); }
+    PixelMap& map() { return *map_; }
+
+    /// May this block of the target, counted in block_side, hold some of the surfaces?
+    bool near(int block_col, int block_row) const {
+        return blocks_.contains({block_col, block_row}) && blocks_[{block_col, block_row}];
+    }
+    /// The surface at a pixel of the source; -1: none.
+    int at(int col, int row) const { return flats_.at(col, row); }
     /// The surface at a node: nearest neighbour, but for what keep_areas() changed.
     int at(std::size_t node, double x, double y) const {
         if (!changed.empty())
             if (const auto found = changed.find(node); found != changed.end())
                 return found->second;
-        return std::isnan(x) ? -1 : flats.at(int(std::floor(x)), int(std::floor(y)));
+        return std::isnan(x) ? -1 : flats_.at(int(std::floor(x)), int(std::floor(y)));
     }
+    double area(const FlatSurface& flat) {
+        double sum = 0.0;
+        for (const Run& run : flat.runs)
+            sum += (run.last - run.first + 1) *
+                   map_->pixel_area(flats_.first_col() + (run.first + run.last) / 2,
+                                    flats_.first_row() + run.row);
+        return sum;
+    }
+    /// Has the source a height at this pixel?
+    bool covers(int col, int row) { return !std::isnan(height(col, row)); }
+    /// Bilinear height at a place of the source [pixels]; NaN where it has none.
+    float linear(double x, double y) {
+        const int c = int(std::floor(x - 0.5)), r = int(std::floor(y - 0.5));
+        const auto fx = float(x - 0.5 - c), fy = float(y - 0.5 - r);
+        return (1 - fy) * ((1 - fx) * height(c, r) + fx * height(c + 1, r)) +
+               fy * ((1 - fx) * height(c, r + 1) + fx * height(c + 1, r + 1));
+    }
+
+    std::unordered_map<std::size_t, int> changed; ///< node -> surface (-1: none) against "nearest"
+
+private:
+    /// Heights by windows that are kept: neighbours ask for neighbours.
+    float height(int col, int row) {
+        if (col < 0 || row < 0 || col >= source_.GetRasterXSize() ||
+            row >= source_.GetRasterYSize())
+            return void_m;
+        constexpr int side = 256;
+        if (window_.values.empty() || col < window_col_ || row < window_row_ ||
+            col >= window_col_ + side || row >= window_row_ + side) {
+            window_col_ = col / side * side;
+            window_row_ = row / side * side;
+            window_ = read_window(source_, window_col_, window_row_, {side, side});
+        }
+        return window_[{col - window_col_, row - window_row_}];
+    }
+
+    void find_blocks(const Target& target) {
+        blocks_ = Grid<unsigned char>({(target.size.cols + block_side - 1) / block_side,
+                                       (target.size.rows + block_side - 1) / block_side});
+        if (flats().empty())
+            return;
+        // Which coarse squares of the source hold water?
+        constexpr int coarse = 32;
+        Grid<unsigned char> water({source_.GetRasterXSize() / coarse + 1,
+                                   source_.GetRasterYSize() / coarse + 1});
+        for (const FlatSurface& flat : flats())
+            for (const Run& run : flat.runs)
+                for (int c = (flats_.first_col() + run.first) / coarse;
+                     c <= (flats_.first_col() + run.last) / coarse; ++c)
+                    water[{c, (flats_.first_row() + run.row) / coarse}] = 1;
+        PixelMap::Row places;
+        for (int row = 0; row < blocks_.size.rows; ++row)
+            for (int col = 0; col < blocks_.size.cols; ++col) {
+                // The image of a block is nearly straight: its corners, and a margin, bound it.
+                Extent box;
+                bool whole = true;
+                for (const int edge : {row * block_side - 1, (row + 1) * block_side}) {
+                    map_->row(edge, col * block_side - 1, block_side + 2, places);
+                    for (std::size_t i = 0; i < places.x.size(); i += places.x.size() - 1) {
+                        whole &= !std::isnan(places.x[i]);
+                        box.add(places.x[i], places.y[i]);
+                    }
+                }
+                bool found = !whole; // looked at more closely
+                const double margin = 2.0;
+                const auto square = [&](double v, int last) {
+                    return std::clamp(int(std::floor(v / coarse)), 0, last);
+                };
+                if (whole && box.east + margin >= 0.0 && box.north + margin >= 0.0 &&
+                    box.west - margin <= source_.GetRasterXSize() &&
+                    box.south - margin <= source_.GetRasterYSize())
+                    for (int r = square(box.south - margin, water.size.rows - 1);
+                         r <= square(box.north + margin, water.size.rows - 1) && !found; ++r)
+                        for (int c = square(box.west - margin, water.size.cols - 1);
+                             c <= square(box.east + margin, water.size.cols - 1); ++c)
+                            found |= water[{c, r}] != 0;
+                blocks_[{col, row}] = found;
+            }
+    }
+
+    GDALDataset& source_;
+    GeoTransform transform_;
+    std::unique_ptr<PixelMap> map_;
+    FlatRows flats_;
+    Grid<unsigned char> blocks_; ///< of the target
+    Grid<float> window_;
+    int window_col_ = 0, window_row_ = 0;
 };
+
+/// Visits the nodes of a block, a row at a time: visit(first node, count).
+template <class Visit>
+void each_block_row(const Target& target, int block_col, int block_row, Visit visit) {
+    const int col = block_col * block_side;
+    const int cols = std::min(block_side, target.size.cols - col);
+    for (int row = block_row * block_side;
+         row < std::min((block_row + 1) * block_side, target.size.rows); ++row)
+        visit(Node{col, row}, cols);
+}
 
 /// Nearest neighbour moves a shore by up to half a cell here and there; over a small lake that is a
 /// percent of its area. Nodes at the very rim are given or taken, the nearest to it first, until
@@ -442,64 +539,63 @@ void keep_areas(FlatLayer& layer, const Target& target) {
         bool cut = false;
         std::vector<Near> in, out;
     };
-    std::vector<Balance> balance(layer.flats.flats().size());
+    std::vector<Balance> balance(layer.flats().size());
     if (balance.empty())
         return;
     constexpr double reach = 0.35; // pixels; the correction needs a tenth of that
-    const int cols = target.size.cols;
+    const int cols = target.size.cols, rows = target.size.rows;
     PixelMap::Row places;
-    for (int row = 0; row < target.size.rows; ++row) {
-        layer.map->row(row, cols, places);
-        for (int col = 0; col < cols; ++col) {
-            const double x = places.x[std::size_t(col)], y = places.y[std::size_t(col)];
-            if (std::isnan(x))
-                continue;
-            const int px = int(std::floor(x)), py = int(std::floor(y));
-            const double fx = x - px, fy = y - py;
-            const int here = layer.flats.at(px, py);
-            const std::size_t node = std::size_t(row) * std::size_t(cols) + std::size_t(col);
-            if (here >= 0) {
-                Balance& b = balance[std::size_t(here)];
-                ++b.inside;
-                b.cut |= row == 0 || col == 0 || row + 1 == target.size.rows || col + 1 == cols;
-            }
-            // Only the neighbours on the node's own side can be near.
-            const int sx = fx < 0.5 ? -1 : 1, sy = fy < 0.5 ? -1 : 1;
-            const double dx = fx < 0.5 ? fx : 1.0 - fx, dy = fy < 0.5 ? fy : 1.0 - fy;
-            if (std::min(dx, dy) >= reach)
-                continue;
-            const struct {
-                int flat;
-                double distance;
-            } beside[3] = {{layer.flats.at(px + sx, py), dx},
-                           {layer.flats.at(px, py + sy), dy},
-                           {layer.flats.at(px + sx, py + sy), std::hypot(dx, dy)}};
-            double nearest = reach;
-            int other = -1;
-            for (const auto& b : beside)
-                if (b.distance < nearest && b.flat != here && (here >= 0 || b.flat >= 0)) {
-                    nearest = b.distance;
-                    other = b.flat;
-                }
-            if (nearest == reach)
-                continue;
-            if (here >= 0)
-                balance[std::size_t(here)].in.push_back({float(nearest), node});
-            else
-                balance[std::size_t(other)].out.push_back({float(nearest), node});
+    const auto look = [&](Node n, double x, double y) {
+        if (std::isnan(x))
+            return;
+        const int px = int(std::floor(x)), py = int(std::floor(y));
+        const double fx = x - px, fy = y - py;
+        const int here = layer.at(px, py);
+        const std::size_t node = std::size_t(n.row) * std::size_t(cols) + std::size_t(n.col);
+        if (here >= 0) {
+            Balance& b = balance[std::size_t(here)];
+            ++b.inside;
+            b.cut |= n.row == 0 || n.col == 0 || n.row + 1 == rows || n.col + 1 == cols;
         }
-    }
+        // Only the neighbours on the node's own side can be near.
+        const int sx = fx < 0.5 ? -1 : 1, sy = fy < 0.5 ? -1 : 1;
+        const double dx = fx < 0.5 ? fx : 1.0 - fx, dy = fy < 0.5 ? fy : 1.0 - fy;
+        if (std::min(dx, dy) >= reach)
+            return;
+        const struct {
+            int flat;
+            double distance;
+        } beside[3] = {{layer.at(px + sx, py), dx},
+                       {layer.at(px, py + sy), dy},
+                       {layer.at(px + sx, py + sy), std::sqrt(dx * dx + dy * dy)}};
+        double nearest = reach;
+        int other = -1;
+        for (const auto& b : beside)
+            if (b.distance < nearest && b.flat != here && (here >= 0 || b.flat >= 0)) {
+                nearest = b.distance;
+                other = b.flat;
+            }
+        if (nearest == reach)
+            return;
+        if (here >= 0)
+            balance[std::size_t(here)].in.push_back({float(nearest), node});
+        else
+            balance[std::size_t(other)].out.push_back({float(nearest), node});
+    };
+    for (int br = 0; br * block_side < rows; ++br)
+        for (int bc = 0; bc * block_side < cols; ++bc)
+            if (layer.near(bc, br))
+                each_block_row(target, bc, br, [&](Node first, int count) {
+                    layer.map().row(first.row, first.col, count, places);
+                    for (int i = 0; i < count; ++i)
+                        look({first.col + i, first.row}, places.x[std::size_t(i)],
+                             places.y[std::size_t(i)]);
+                });
     for (std::size_t i = 0; i < balance.size(); ++i) {
         Balance& b = balance[i];
-        const FlatSurface& flat = layer.flats.flats()[i];
         if (b.cut || b.inside == 0)
             continue;
-        double area = 0.0;
-        for (const Run& run : flat.runs)
-            area += (run.last - run.first + 1) *
-                    layer.map->pixel_area(layer.flats.first_col() + (run.first + run.last) / 2,
-                                          layer.flats.first_row() + run.row);
-        const long lacking = std::lround(area) - long(b.inside);
+        const long lacking = std::lround(layer.area(layer.flats()[i])) - long(b.inside);
         std::vector<Near>& from = lacking > 0 ? b.out : b.in;
         const auto count = std::min(std::size_t(std::abs(lacking)), from.size());
         std::partial_sort(from.begin(), from.begin() + std::ptrdiff_t(count), from.end(),
@@ -509,87 +605,111 @@ void keep_areas(FlatLayer& layer, const Target& target) {
     }
 }
 
-/// Water surfaces by nearest neighbour, strip by strip: level and area stay (see the header).
-void keep_flats(Grid<float>& z, const Target& target, const std::vector<GDALDataset*>& inputs,
-                const std::vector<const OGRSpatialReference*>& crs, bool cubic,
-                const Progress& progress) {
-    std::vector<FlatLayer> layers;
-    OGRSpatialReference local;
-    local.SetFromUserInput(target.wkt.c_str());
-    local.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+/// Finds the water surfaces of all sources, and whether these have voids.
+std::vector<std::unique_ptr<FlatLayer>> find_layers(
+    const Target& target, const std::vector<GDALDataset*>& inputs,
+    const std::vector<const OGRSpatialReference*>& crs, bool& voids, const Progress& progress) {
+    std::vector<std::unique_ptr<FlatLayer>> layers;
     for (std::size_t i = 0; i < inputs.size(); ++i) {
-        progress.report(0.42 + 0.08 * double(i) / double(inputs.size()), "finding flat water");
-        double g[6];
-        inputs[i]->GetGeoTransform(g);
-        // Only the part that the scene uses is read.
-        auto back = between(local, *crs[i]);
-        const Extent used = image_of(target.box, *back, "scene");
-        int c0 = 0, r0 = 0, c1 = inputs[i]->GetRasterXSize(), r1 = inputs[i]->GetRasterYSize();
-        if (g[2] == 0.0 && g[4] == 0.0) {
-            const double ca = (used.west - g[0]) / g[1], cb = (used.east - g[0]) / g[1];
-            const double ra = (used.south - g[3]) / g[5], rb = (used.north - g[3]) / g[5];
-            const auto pixel = [](double v) { return int(std::clamp(v, -1e9, 1e9)); };
-            c0 = std::max(c0, pixel(std::floor(std::min(ca, cb))) - 2);
-            c1 = std::min(c1, pixel(std::ceil(std::max(ca, cb))) + 2);
-            r0 = std::max(r0, pixel(std::floor(std::min(ra, rb))) - 2);
-            r1 = std::min(r1, pixel(std::ceil(std::max(ra, rb))) + 2);
-        }
-        if (c0 >= c1 || r0 >= r1)
-            continue;
-        layers.push_back({.flats = find_source_flats(*inputs[i], c0, r0, c1, r1),
-                          .map = std::make_unique<PixelMap>(*crs[i], g, target),
-                          .source = inputs[i],
-                          .changed = {}});
-        keep_areas(layers.back(), target);
+        progress.report(0.02 + 0.13 * double(i) / double(inputs.size()), "finding flat water");
+        layers.push_back(std::make_unique<FlatLayer>(*inputs[i], *crs[i], target, voids));
+        keep_areas(*layers.back(), target);
     }
-    std::vector<Lift> lifts;
+    return layers;
+}
+
+/// Water surfaces by nearest neighbour: level and area stay (see the header). Then land beside
+/// them that a cubic pulled below their level, although bilinear interpolation keeps it above, is
+/// lifted: no puddles along the shore. Land that is really lower (a polder, the river below a dam)
+/// is lower in both.
+void keep_flats(Grid<float>& z, const Target& target,
+                const std::vector<std::unique_ptr<FlatLayer>>& layers, bool cubic,
+                const Progress& progress) {
+    progress.report(0.5, "keeping lakes flat");
+    const int block_cols = (target.size.cols + block_side - 1) / block_side;
+    const int block_rows = (target.size.rows + block_side - 1) / block_side;
+    const auto each_near_block = [&](auto visit) {
+        for (int br = 0; br < block_rows; ++br)
+            for (int bc = 0; bc < block_cols; ++bc)
+                if (std::any_of(layers.begin(), layers.end(),
+                                [&](const auto& layer) { return layer->near(bc, br); }))
+                    visit(bc, br);
+    };
+    enum : std::uint8_t { land, water, tried };
+    Grid<std::uint8_t> kind(z.size, land);
     PixelMap::Row places;
-    constexpr int strip = 512;
-    for (int r0 = 0; r0 < target.size.rows; r0 += strip) {
-        progress.report(0.5 + 0.1 * r0 / target.size.rows, "keeping lakes flat");
-        const int r1 = std::min(r0 + strip, target.size.rows);
-        Grid<float> flat({target.size.cols, r1 - r0 + 2 * cubic_reach}, void_m);
-        bool any = false;
-        const int top = std::max(r0 - cubic_reach, 0),
-                  bottom = std::min(r1 + cubic_reach, target.size.rows);
-        for (int row = top; row < bottom; ++row)
-            for (FlatLayer& layer : layers) { // the last one that covers a place counts
-                if (layer.flats.flats().empty() && !any)
+    std::vector<int> surface(block_side), owner(block_side);
+    each_near_block([&](int bc, int br) {
+        each_block_row(target, bc, br, [&](Node first, int count) {
+            std::fill(surface.begin(), surface.end(), -1);
+            const std::size_t start = z.index(first);
+            for (std::size_t k = 0; k < layers.size(); ++k) { // the last that covers a place counts
+                FlatLayer& layer = *layers[k];
+                const bool near = layer.near(bc, br);
+                if (!near && std::all_of(surface.begin(), surface.end(),
+                                         [](int s) { return s < 0; }))
                     continue;
-                layer.map->row(row, target.size.cols, places);
-                for (int col = 0; col < target.size.cols; ++col) {
-                    const double x = places.x[std::size_t(col)], y = places.y[std::size_t(col)];
-                    const int surface = layer.at(
-                        std::size_t(row) * std::size_t(target.size.cols) + std::size_t(col), x, y);
-                    float& here = flat[{col, row - r0 + cubic_reach}];
-                    if (surface >= 0) {
-                        here = layer.flats.flats()[std::size_t(surface)].level_m;
-                        any = true;
-                    } else if (!std::isnan(here) && !std::isnan(x) &&
+                layer.map().row(first.row, first.col, count, places);
+                for (std::size_t i = 0; i < std::size_t(count); ++i) {
+                    const double x = places.x[i], y = places.y[i];
+                    const int here = near ? layer.at(start + i, x, y) : -1;
+                    if (here >= 0) {
+                        surface[i] = here;
+                        owner[i] = int(k);
+                    } else if (surface[i] >= 0 && !std::isnan(x) &&
                                layer.covers(int(std::floor(x)), int(std::floor(y)))) {
-                        here = void_m;
+                        surface[i] = -1;
                     }
                 }
             }
-        if (!any)
-            continue;
-        Grid<float> linear;
-        if (cubic) {
-            Target part = target;
-            part.size.rows = bottom - top;
-            const double s = (target.box.north - target.box.south) / target.size.rows;
-            part.box.north = target.box.north - top * s;
-            part.box.south = target.box.north - bottom * s;
-            const Grid<float> rows = warp(inputs, part, "bilinear", Progress{}, "", 0.0, 1.0);
-            linear = Grid<float>(flat.size, void_m);
-            std::copy(rows.values.begin(), rows.values.end(),
-                      linear.values.begin() +
-                          std::ptrdiff_t(linear.index({0, top - r0 + cubic_reach})));
+            for (std::size_t i = 0; i < std::size_t(count); ++i)
+                if (surface[i] >= 0) {
+                    const FlatLayer& layer = *layers[std::size_t(owner[i])];
+                    z.values[start + i] = layer.flats()[std::size_t(surface[i])].level_m;
+                    kind.values[start + i] = water;
+                }
+        });
+    });
+    if (!cubic)
+        return;
+    constexpr float puddle_m = 0.01f; // pits shallower than this beside a lake are noise
+    const auto lift = [&](Node n, float level) {
+        kind[n] = tried;
+        // The last layer with a height here made this node.
+        for (std::size_t k = layers.size(); k-- > 0;) {
+            layers[k]->map().row(n.row, n.col, 1, places);
+            const float linear =
+                std::isnan(places.x[0]) ? void_m : layers[k]->linear(places.x[0], places.y[0]);
+            if (std::isnan(linear))
+                continue;
+            if (linear >= level - puddle_m)
+                z[n] = std::max(linear,
+                                std::nextafter(level, std::numeric_limits<float>::max()));
+            return;
         }
-        lay_flats(z, flat, linear, r0, r1, lifts);
-    }
-    for (const Lift& lift : lifts)
-        z[lift.at] = std::max(z[lift.at], lift.to);
+    };
+    each_near_block([&](int bc, int br) {
+        each_block_row(target, bc, br, [&](Node first, int count) {
+            for (int i = 0; i < count; ++i) {
+                const Node at{first.col + i, first.row};
+                if (kind[at] != water)
+                    continue;
+                const float level = z[at];
+                bool rim = false;
+                for (const Node n : {Node{at.col - 1, at.row}, Node{at.col + 1, at.row},
+                                     Node{at.col, at.row - 1}, Node{at.col, at.row + 1}})
+                    rim |= z.contains(n) && kind[n] != water;
+                if (!rim)
+                    continue;
+                for (int row = std::max(at.row - cubic_reach, 0);
+                     row <= std::min(at.row + cubic_reach, z.size.rows - 1); ++row)
+                    for (int col = std::max(at.col - cubic_reach, 0);
+                         col <= std::min(at.col + cubic_reach, z.size.cols - 1); ++col)
+                        if (kind[{col, row}] == land && z[{col, row}] <= level)
+                            lift({col, row}, level);
+            }
+        });
+    });
 }
 
 Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
@@ -684,7 +804,15 @@ Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
     }
     const bool coarser = spacing > 1.5 * native;
     const std::string resampling = coarser ? "average" : "cubic";
-    out.elevation_m = warp(inputs, target, resampling, progress, "warping", 0.05, 0.4);
+    std::vector<const OGRSpatialReference*> crs;
+    for (const auto& group : groups)
+        crs.push_back(&group.front()->crs);
+    bool voids = false;
+    const auto layers = find_layers(target, inputs, crs, voids, progress);
+    for (std::size_t i = 0; i < groups.size(); ++i)
+        for (GDALDataset* input : {inputs[i], groups[i].front()->raster.get()})
+            declare_voids(*input, voids);
+    out.elevation_m = warp(inputs, target, resampling, progress, "warping", 0.15, 0.5);
     out.resampling = text(resampling, " from ", fixed(native, 2), " m to ", fixed(spacing, 2),
                           " m; flat water surfaces by nearest neighbour");
     if (groups.size() > 1)
@@ -692,10 +820,7 @@ Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
                                  " grids out of phase with each other were resampled "
                                  "onto one; where they overlap the last one counts"));
 
-    std::vector<const OGRSpatialReference*> crs;
-    for (const auto& group : groups)
-        crs.push_back(&group.front()->crs);
-    keep_flats(out.elevation_m, target, inputs, crs, !coarser, progress);
+    keep_flats(out.elevation_m, target, layers, !coarser, progress);
     return out;
 }
 

@@ -65,21 +65,17 @@ std::size_t part_lakes(LakeOf& lake_of, std::span<const double> levels) {
     if (levels.size() < 2)
         return 0;
     std::size_t dried = 0;
-    for (int row = 0; row < lake_of.size.rows; ++row)
-        for (int col = 0; col < lake_of.size.cols; ++col) {
-            const Node at{col, row};
-            if (lake_of[at] == 0)
-                continue;
-            const double level = levels[lake_of[at] - 1u];
-            bool higher = false;
-            each_neighbour(lake_of.size, at, [&](Node n) {
-                higher |= lake_of[n] != 0 && levels[lake_of[n] - 1u] < level;
-            });
-            if (higher) {
-                lake_of[at] = 0;
-                ++dried;
-            }
+    each_shore_node(lake_of, [&](Node at) {
+        const double level = levels[lake_of[at] - 1u];
+        bool higher = false;
+        each_neighbour(lake_of.size, at, [&](Node n) {
+            higher |= lake_of[n] != 0 && levels[lake_of[n] - 1u] < level;
+        });
+        if (higher) {
+            lake_of[at] = 0;
+            ++dried;
         }
+    });
     return dried;
 }
 
@@ -92,21 +88,19 @@ std::size_t separate(Heightfield& ground, const LakeOf& lake_of, std::span<const
         above.push_back(
             static_cast<std::uint16_t>(std::clamp(std::floor(exact) + 1.0, 0.0, 65535.0)));
     }
+    for (std::size_t i = 0; i < lake_of.values.size(); ++i)
+        if (const unsigned lake = lake_of.values[i]; lake != 0)
+            ground.codes.values[i] = std::min(ground.codes.values[i], below[lake - 1]);
     std::size_t raised = 0;
-    for (int row = 0; row < ground.size().rows; ++row)
-        for (int col = 0; col < ground.size().cols; ++col) {
-            const Node at{col, row};
-            const unsigned lake = lake_of[at];
-            if (lake == 0)
-                continue;
-            ground.codes[at] = std::min(ground.codes[at], below[lake - 1]);
-            each_neighbour(ground.size(), at, [&](Node n) {
-                if (lake_of[n] == 0 && ground.codes[n] < above[lake - 1]) {
-                    raised += above[lake - 1] - ground.codes[n] > 1;
-                    ground.codes[n] = above[lake - 1];
-                }
-            });
-        }
+    each_shore_node(lake_of, [&](Node at) {
+        const std::uint16_t least = above[lake_of[at] - 1u];
+        each_neighbour(ground.size(), at, [&](Node n) {
+            if (lake_of[n] == 0 && ground.codes[n] < least) {
+                raised += least - ground.codes[n] > 1;
+                ground.codes[n] = least;
+            }
+        });
+    });
     return raised;
 }
 
@@ -114,19 +108,16 @@ void pour(Heightfield& water, const LakeOf& lake_of, std::span<const double> lev
     std::vector<std::uint16_t> codes;
     for (const double level : levels)
         codes.push_back(code_of(water, level));
-    for (int row = 0; row < water.size().rows; ++row)
-        for (int col = 0; col < water.size().cols; ++col) {
-            const Node at{col, row};
-            if (lake_of[at] == 0)
-                continue;
-            const std::uint16_t code = codes[lake_of[at] - 1u];
-            water.codes[at] = code;
-            each_neighbour(water.size(), at, [&](Node n) {
-                if (lake_of[n] == 0 &&
-                    (water.codes[n] == no_water_code || code < water.codes[n]))
-                    water.codes[n] = code;
-            });
-        }
+    for (std::size_t i = 0; i < lake_of.values.size(); ++i)
+        if (const unsigned lake = lake_of.values[i]; lake != 0)
+            water.codes.values[i] = codes[lake - 1];
+    each_shore_node(lake_of, [&](Node at) {
+        const std::uint16_t code = codes[lake_of[at] - 1u];
+        each_neighbour(water.size(), at, [&](Node n) {
+            if (lake_of[n] == 0 && (water.codes[n] == no_water_code || code < water.codes[n]))
+                water.codes[n] = code;
+        });
+    });
 }
 
 } // namespace tarn::dem
