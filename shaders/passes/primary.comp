@@ -12,16 +12,19 @@ layout(binding = TARN_BUFFER_LAKES, std430) readonly buffer Lakes { vec4 lakes[]
 layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform writeonly uimage2D hits;
 layout(binding = TARN_IMAGE_DISTANCE, r32f) uniform writeonly image2D distance_image;
 
-// Whether the bed of the lake with that level is known.
+// Whether the bed of the lake with that level is known. The lakes come sorted by level.
 bool bed_is_known(float level) {
-    float nearest = far_m;
-    bool known = true;
-    for (uint k = 0u; k < view.counts.w; ++k)
-        if (abs(lakes[k].x - level) < nearest) {
-            nearest = abs(lakes[k].x - level);
-            known = lakes[k].y > 0.5;
-        }
-    return known;
+    uint low = 0u, high = view.counts.w; // the first lake above the level lies in [low, high]
+    while (low < high) {
+        uint middle = (low + high) / 2u;
+        if (lakes[middle].x < level)
+            low = middle + 1u;
+        else
+            high = middle;
+    }
+    if (low == view.counts.w || (low > 0u && level - lakes[low - 1u].x < lakes[low].x - level))
+        --low; // the one below is nearer
+    return lakes[low].y > 0.5;
 }
 
 void main() {

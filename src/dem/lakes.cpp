@@ -140,6 +140,32 @@ void ramps(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
         });
         return inside && high - low <= even_m;
     };
+    // What makes it water rather than level ground (the flat bottom of a lake's own bed, say): it
+    // goes on from a flat surface, or the land breaks up from it at the shore.
+    const auto around = [&](const std::vector<Node>& nodes, auto visit) {
+        for (const Node n : nodes)
+            for (int dr = -3; dr <= 3; ++dr)
+                for (int dc = -3; dc <= 3; ++dc) {
+                    const Node m{n.col + dc, n.row + dr};
+                    if (std::max(std::abs(dr), std::abs(dc)) == 3 && z.contains(m) &&
+                        !(marks[m] & mark::seen))
+                        visit(m);
+                }
+    };
+    const auto beside_flat = [&](const std::vector<Node>& nodes) {
+        bool found = false;
+        const float level = z[nodes.front()];
+        around(nodes, [&](Node m) {
+            found |= (marks[m] & mark::flat) && std::abs(z[m] - level) <= 2.0f * seam_m;
+        });
+        return found;
+    };
+    const auto shore = [&](const std::vector<Node>& nodes, float level) {
+        constexpr float break_m = 0.3f;
+        std::vector<float> rise;
+        around(nodes, [&](Node m) { rise.push_back(z[m] - level); });
+        return !rise.empty() && median(rise) >= break_m;
+    };
     std::vector<FlatSurface> found;
     for (int row = 1; row + 1 < z.size.rows; ++row)
         for (int col = 1; col + 1 < z.size.cols; ++col) {
@@ -177,7 +203,7 @@ void ramps(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
                     higher += z[m] > level + even_m;
                 });
             }
-            if (off == 0 && 4 * lower <= lower + higher)
+            if (off == 0 && 4 * lower <= lower + higher && (beside_flat(nodes) || shore(nodes, level)))
                 found.push_back(surface_of(nodes, level));
         }
     clear(marks, mark::seen);

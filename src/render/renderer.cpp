@@ -61,6 +61,8 @@ void Renderer::upload_scene() {
         top = std::max(top, lake.level_m);
         lakes.emplace_back(float(lake.level_m - ground.offset_m), lake.bed != Bed::unknown, 0, 0);
     }
+    std::sort(lakes.begin(), lakes.end(),
+              [](const glm::vec4& a, const glm::vec4& b) { return a.x < b.x; });
     lakes_ = gpu::Buffer(lakes.size() * sizeof lakes[0], lakes.data());
     block_.grid = {float(size.cols), float(size.rows), float(ground.spacing_m),
                    float(top - ground.offset_m)};

@@ -77,8 +77,8 @@ TEST(SceneJson, EveryBrokenFieldIsNamed) {
     };
     EXPECT_EQ(says(good), "no error");
     const std::vector<std::array<std::string, 3>> cases = {
-        {"\"version\": 1", "\"version\": 2", "version is 2"},
-        {"\"version\": 1", "\"version\": 1.5", "version must be a whole number"},
+        {"\"version\": 2", "\"version\": 1", "version is 1"},
+        {"\"version\": 2", "\"version\": 2.5", "version must be a whole number"},
         {"\"format\": \"tarn scene\"", "\"format\": \"x\"", "format is not"},
         {"\"cols\": 33", "\"cols\": -33", "grid.cols is -33"},
         {"\"cols\": 33", "\"cols\": 4294967329", "grid.cols is 4294967329"},
