@@ -77,7 +77,11 @@ std::optional<Filled> fill_closed(const Grid<float>& z, const Marks& marks, floa
                 const Node n{at.col + dc, at.row + dr};
                 if (!z.contains(n) || (marks[n] & mark::outside))
                     open = true;
-                else if (lake_of[n] == 0 && z[n] <= highest_wet_m)
+                else if (lake_of[n] == id || !(z[n] <= highest_wet_m))
+                    continue;
+                else if (lake_of[n] != 0)
+                    open = true; // into another lake
+                else
                     enter(n);
             }
     };

@@ -46,8 +46,8 @@ Filled fill_from(const Grid<float>& elevation_m, const Marks& marks, float highe
                  std::span<const Node> seeds, int id, LakeOf& lake_of,
                  double floor_m = -std::numeric_limits<double>::infinity());
 
-/// As fill_from() without a floor, but gives up as soon as the water leaves the data: then nothing
-/// is filled. It looks downhill first, so that it soon finds a way out if there is one.
+/// As fill_from() without a floor, but gives up as soon as the water leaves the data or runs into
+/// another lake: then nothing is filled. It looks downhill first, so that it soon finds a way out if there is one.
 std::optional<Filled> fill_closed(const Grid<float>& elevation_m, const Marks& marks,
                                   float highest_wet_m, Node seed, int id, LakeOf& lake_of);
 
