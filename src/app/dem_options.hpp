@@ -12,6 +12,7 @@ struct DemWords {
     dem::ImportOptions options;
     std::vector<std::string> dems;
     std::string at, bounds, nodata;
+    std::string source, sources, cache; ///< of tiles on the network
 };
 
 void add_dem_options(CLI::App& command, DemWords& words);

@@ -20,8 +20,10 @@
 namespace tarn::dem {
 
 void ImportOptions::validate() const {
-    if (dems.empty())
-        throw Error("no elevation data given", "name at least one raster");
+    if (dems.empty() && !remote)
+        throw Error("no elevation data given", "name at least one raster, or give --source");
+    if (remote && !radius_km && !bounds)
+        throw Error("--source needs a place", "give --at LAT,LON and --radius KM, or --bounds");
     const auto range = [](const char* field, const std::optional<double>& value, double low,
                           double high) {
         if (value && !(*value >= low && *value <= high)) // also rejects NaN
@@ -155,6 +157,9 @@ public:
 
 private:
     void note(const std::string& words) { report_.notes.push_back(words); }
+    Bounds region() const {
+        return options_.bounds ? *options_.bounds : around(*options_.at, *options_.radius_km);
+    }
     void add_input(Source& source, const std::string& role);
     std::size_t least_nodes() const;
     LakeSearch search() {
@@ -199,7 +204,13 @@ void Work::add_input(Source& source, const std::string& role) {
 void Work::open() {
     progress_.report(0.0, "opening");
     std::vector<std::string> without_unit;
-    for (const auto& path : options_.dems)
+    std::vector<std::filesystem::path> paths = options_.dems;
+    if (options_.remote) {
+        const Fetched fetched = fetch_tiles(*options_.remote, region(), options_.fetch, progress_);
+        paths.insert(paths.end(), fetched.tiles.begin(), fetched.tiles.end());
+        report_.notes.insert(report_.notes.end(), fetched.notes.begin(), fetched.notes.end());
+    }
+    for (const auto& path : paths)
         for (Source& source : open_sources(path, {.crs = options_.crs,
                                                   .nodata = options_.nodata,
                                                   .unit = options_.unit})) {
@@ -221,7 +232,7 @@ void Work::open() {
 void Work::build_grid() {
     MosaicOptions mosaic_options{.bounds = options_.bounds, .spacing_m = options_.spacing_m};
     if (options_.radius_km)
-        mosaic_options.bounds = around(*options_.at, *options_.radius_km);
+        mosaic_options.bounds = region();
     mosaic_ = build_mosaic(sources_, mosaic_options, progress_);
     mosaic_.frame.vertical_datum = sources_.front().input.vertical;
     report_.resampling = mosaic_.resampling;

@@ -8,6 +8,7 @@
 #include "core/progress.hpp"
 #include "dem/bed.hpp"
 #include "dem/mosaic.hpp"
+#include "dem/remote.hpp"
 #include "geo/frame_data.hpp"
 
 #include <filesystem>
@@ -27,6 +28,8 @@ enum class LakeChoice { all, one };
 /// Every field's default is what `tarn import --help` prints.
 struct ImportOptions {
     std::vector<std::filesystem::path> dems;
+    std::optional<RemoteSource> remote; ///< tiles from the network, besides or instead of `dems`
+    FetchOptions fetch;
     std::optional<double> level_m;   ///< nothing = find the water surface
     std::optional<GeoPoint> at;      ///< a point in (or near) the lake
     std::optional<double> radius_km; ///< around `at`, (0, 500]

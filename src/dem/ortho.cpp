@@ -7,6 +7,8 @@
 #include <cmath>
 #include <gdal_alg.h>
 #include <gdal_utils.h>
+#include <utility>
+#include <vector>
 
 namespace tarn::dem {
 
@@ -23,6 +25,35 @@ Dataset translate(GDALDataset& from, Arguments& arguments, const std::string& na
     return out;
 }
 
+/// The range that the middle 99 % of the valid colours take, over all bands, from a sample.
+std::pair<double, double> colour_range(GDALDataset& picture, int colours) {
+    const int cols = std::min(picture.GetRasterXSize(), 512),
+              rows = std::min(picture.GetRasterYSize(), 512);
+    std::vector<double> values, line(std::size_t(cols) * std::size_t(rows));
+    std::vector<unsigned char> mask(line.size());
+    GdalMessages quiet;
+    for (int b = 1; b <= colours; ++b) {
+        GDALRasterBand& band = *picture.GetRasterBand(b);
+        if (band.RasterIO(GF_Read, 0, 0, band.GetXSize(), band.GetYSize(), line.data(), cols, rows,
+                          GDT_Float64, 0, 0) != CE_None ||
+            band.GetMaskBand()->RasterIO(GF_Read, 0, 0, band.GetXSize(), band.GetYSize(),
+                                         mask.data(), cols, rows, GDT_Byte, 0, 0) != CE_None)
+            return {0.0, 255.0}; // reading it in earnest will say what is wrong
+        for (std::size_t i = 0; i < line.size(); ++i)
+            if (mask[i] != 0 && std::isfinite(line[i]))
+                values.push_back(line[i]);
+    }
+    if (values.empty())
+        return {0.0, 255.0};
+    const auto at = [&](double share) {
+        const auto k = std::ptrdiff_t(share * double(values.size() - 1));
+        std::nth_element(values.begin(), values.begin() + k, values.end());
+        return values[std::size_t(k)];
+    };
+    const double low = at(0.005), high = at(0.995);
+    return {low, std::max(high, low + 1e-9)};
+}
+
 } // namespace
 
 Ortho warp_ortho(Source& source, const geo::Frame& frame, const Heightfield& ground,
@@ -36,16 +67,20 @@ Ortho warp_ortho(Source& source, const geo::Frame& frame, const Heightfield& gro
         view = translate(*input, expand, source.name);
         input = view.get();
     } else if (first.GetRasterDataType() != GDT_Byte) {
-        // Colours are stretched from their own range; an alpha band keeps its meaning.
-        Arguments scale{"-of", "MEM", "-ot", "Byte"};
-        const int bands = input->GetRasterCount(),
-                  colours = bands == 2 || bands == 4 ? bands - 1 : bands;
-        for (int b = 1; b <= bands; ++b) {
+        // One stretch for all colours, so that a blue picture stays blue; what has no data or is
+        // transparent becomes an alpha band, for after the stretch no value is left to say so.
+        const int bands = input->GetRasterCount(), colours = bands >= 3 ? 3 : 1;
+        const auto [low, high] = colour_range(*input, colours);
+        Arguments scale{"-of", "MEM", "-ot", "Byte", "-a_nodata", "none"};
+        for (int b = 1; b <= colours + 1; ++b) {
+            scale.add("-b");
+            scale.add(b <= colours ? text(b) : "mask");
             scale.add(text("-scale_", b));
-            if (b > colours)
-                for (const char* word : {"0", "65535", "0", "255"})
-                    scale.add(word);
+            for (const double v : {b <= colours ? low : 0.0, b <= colours ? high : 255.0, 0.0, 255.0})
+                scale.add(text(v));
         }
+        scale.add(text("-colorinterp_", colours + 1));
+        scale.add("alpha");
         view = translate(*input, scale, source.name);
         input = view.get();
     }

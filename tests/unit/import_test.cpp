@@ -6,6 +6,7 @@
 #include "geo/frame.hpp"
 #include "support/files.hpp"
 
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -340,6 +341,97 @@ TEST(Import, SixteenBitPicturesKeepTheirAlpha) {
     EXPECT_GT(opaque, p.bytes.size() / 4 * 9 / 10);
     EXPECT_GT(brightest, 240);
     EXPECT_NEAR(result.frame.origin_easting_m + result.ortho->west_m, 500'200.0, 1e-6);
+}
+
+namespace {
+
+/// A picture over the middle of bowl(101, 10): `bands` of `type`, filled by set(band, col, row).
+template <class Set>
+void write_picture(const std::filesystem::path& path, int bands, GDALDataType type, Set set,
+                   std::optional<double> nodata = {}, GDALColorTable* palette = nullptr) {
+    dem::register_drivers();
+    CPLStringList options;
+    dem::Dataset ds(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+        path.c_str(), 60, 40, bands, type, options.List()));
+    double g[6] = {500'200, 10, 0, 5'299'800, 0, -10};
+    ds->SetGeoTransform(g);
+    OGRSpatialReference srs;
+    srs.SetFromUserInput("EPSG:32633");
+    ds->SetSpatialRef(&srs);
+    for (int b = 1; b <= bands; ++b) {
+        GDALRasterBand& band = *ds->GetRasterBand(b);
+        if (palette)
+            band.SetColorTable(palette);
+        if (nodata)
+            band.SetNoDataValue(*nodata);
+        std::vector<double> line(60);
+        for (int r = 0; r < 40; ++r) {
+            for (int c = 0; c < 60; ++c)
+                line[std::size_t(c)] = set(b, c, r);
+            ASSERT_EQ(band.RasterIO(GF_Write, 0, r, 60, 1, line.data(), 60, 1, GDT_Float64, 0, 0),
+                      CE_None);
+        }
+    }
+}
+
+/// RGBA that the drape shows at a place of the picture's own grid.
+std::array<int, 4> draped(const Ortho& ortho, const geo::Frame& frame, double col, double row) {
+    const double x = 500'200 + 10 * (col + 0.5) - frame.origin_easting_m;
+    const double y = 5'299'800 - 10 * (row + 0.5) - frame.origin_northing_m;
+    const int c = int((x - ortho.west_m) / ortho.spacing_m),
+              r = int((ortho.north_m - y) / ortho.spacing_m);
+    std::array<int, 4> out{};
+    for (std::size_t k = 0; k < 4; ++k)
+        out[k] = ortho.picture.bytes[(std::size_t(r) * std::size_t(ortho.picture.width_px) +
+                                      std::size_t(c)) *
+                                         4 +
+                                     k];
+    return out;
+}
+
+} // namespace
+
+TEST(Import, PicturesOfAnyKindFallBackWhereTheyHaveNothing) {
+    const TempFolder folder;
+    write(folder / "bowl.tif", bowl(101, 10.0), 500'000, 5'300'000, 10.0);
+    const auto drape = [&](const std::string& name) {
+        return dem::import_dem(
+            {.dems = {folder / "bowl.tif"}, .level_m = 10.0, .ortho = folder / name}, {});
+    };
+    // 8 bits, nodata 255 in the left half.
+    write_picture(folder / "byte.tif", 3, GDT_Byte,
+                  [](int b, int c, int) { return c < 30 ? 255.0 : 40.0 * b; }, 255.0);
+    auto result = drape("byte.tif");
+    EXPECT_EQ(draped(*result.ortho, result.frame, 10, 20)[3], 0);
+    EXPECT_EQ(draped(*result.ortho, result.frame, 50, 20), (std::array{40, 80, 120, 255}));
+    // 16 bits, nodata 0 in the left half, values up to 4000: stretched by what is there.
+    write_picture(folder / "deep.tif", 3, GDT_UInt16,
+                  [](int b, int c, int r) { return c < 30 ? 0.0 : 1000.0 * b + 25.0 * r; }, 0.0);
+    result = drape("deep.tif");
+    EXPECT_EQ(draped(*result.ortho, result.frame, 10, 20)[3], 0);
+    const auto low = draped(*result.ortho, result.frame, 50, 2),
+               high = draped(*result.ortho, result.frame, 50, 37);
+    EXPECT_EQ(low[3], 255);
+    EXPECT_GT(high[0], low[0] + 30);
+    EXPECT_GT(high[2], high[0]); // one stretch for all bands: a blue picture stays blue
+    // A palette with a transparent entry.
+    GDALColorTable palette;
+    const GDALColorEntry red{200, 10, 20, 255}, none{0, 0, 0, 0};
+    palette.SetColorEntry(0, &none);
+    palette.SetColorEntry(1, &red);
+    write_picture(folder / "palette.tif", 1, GDT_Byte,
+                  [](int, int c, int) { return c < 30 ? 0.0 : 1.0; }, 0.0, &palette);
+    result = drape("palette.tif");
+    EXPECT_EQ(draped(*result.ortho, result.frame, 10, 20)[3], 0);
+    EXPECT_EQ(draped(*result.ortho, result.frame, 50, 20), (std::array{200, 10, 20, 255}));
+    // Grey with nodata.
+    write_picture(folder / "grey.tif", 1, GDT_Byte,
+                  [](int, int c, int) { return c < 30 ? 7.0 : 99.0; }, 7.0);
+    result = drape("grey.tif");
+    EXPECT_EQ(draped(*result.ortho, result.frame, 10, 20)[3], 0);
+    EXPECT_EQ(draped(*result.ortho, result.frame, 50, 20), (std::array{99, 99, 99, 255}));
+    // The picture covers 600 x 400 m of 1010 x 1010: the rest has none.
+    EXPECT_LT(result.ortho->picture.width_px * result.ortho->spacing_m, 620.0);
 }
 
 TEST(Samples, TheCalderaMeetsThePublishedFiguresWithinOnePercent) {
