@@ -79,9 +79,8 @@ Ortho warp_ortho(Source& source, const geo::Frame& frame, const Heightfield& gro
             for (const double v : {b <= colours ? low : 0.0, b <= colours ? high : 255.0, 0.0, 255.0})
                 scale.add(text(v));
         }
-        scale.add(text("-colorinterp_", colours + 1));
-        scale.add("alpha");
         view = translate(*input, scale, source.name);
+        view->GetRasterBand(colours + 1)->SetColorInterpretation(GCI_AlphaBand);
         input = view.get();
     }
     const double half = 0.5 * ground.spacing_m;
