@@ -114,6 +114,8 @@ void add_import(CLI::App& app, Run& run) {
                   "for")
         ->check(CLI::IsMember({"all", "one"}))
         ->capture_default_str();
+    c->add_flag("--depths", options.depths,
+                "the DEM itself holds depths below --level, of either sign, not elevations");
     c->add_option("--bathymetry", words->bathymetry,
                   "raster of the lake's bed: elevations or depths");
     c->add_option("--soundings", words->soundings,

@@ -53,8 +53,11 @@ void FlatFinder::close_row() {
     const float* h = here_.data();
     const float* b = below_.data();
     std::size_t equal = 0;
-    for (std::size_t c = 0; c < n; ++c)
-        candidate_[c] = (h[c] == a[c]) | (h[c] == b[c]);
+    for (std::size_t c = 0; c < n; ++c) {
+        const std::size_t l = c > 0 ? c - 1 : c, r = c + 1 < n ? c + 1 : c;
+        candidate_[c] = (h[c] == a[c]) | (h[c] == b[c]) | (h[c] == a[l]) | (h[c] == a[r]) |
+                        (h[c] == b[l]) | (h[c] == b[r]);
+    }
     for (std::size_t c = 0; c + 1 < n; ++c) {
         const unsigned char same = h[c] == h[c + 1];
         candidate_[c] |= same;
@@ -75,12 +78,13 @@ void FlatFinder::close_row() {
         int last = c;
         while (last + 1 < cols_ && h[last + 1] == level)
             ++last;
-        // Joined with every equal run above that shares a column.
+        // Joined with every equal run above that touches it, be it by a corner (8 neighbours, as
+        // water spreads).
         int surface = -1;
-        while (next_above < pieces_above_.size() && pieces_above_[next_above].last < c)
+        while (next_above < pieces_above_.size() && pieces_above_[next_above].last + 1 < c)
             ++next_above;
         for (std::size_t k = next_above;
-             k < pieces_above_.size() && pieces_above_[k].first <= last; ++k) {
+             k < pieces_above_.size() && pieces_above_[k].first <= last + 1; ++k) {
             int other = root(pieces_above_[k].surface);
             if (open_[std::size_t(other)].level_m != level || other == surface)
                 continue;

@@ -64,7 +64,8 @@ private:
         const auto width = std::size_t(cols);
         // Whole metres and floats are exact as float; what is scaled or wider is not.
         const GDALDataType stored = source_.GetRasterDataType();
-        const bool plain = rule_.scale == 1.0 && rule_.offset == 0.0 && rule_.factor == 1.0 &&
+        const bool plain = rule_.base == 0.0 && rule_.scale == 1.0 &&
+                           rule_.offset == 0.0 && rule_.factor == 1.0 &&
                            (stored == GDT_Float32 || stored == GDT_Int16 ||
                             stored == GDT_UInt16 || stored == GDT_Byte);
         if (plain) {
@@ -128,7 +129,7 @@ private:
                 findings_->forgotten = true;
             return none;
         }
-        const double z = rule_.factor * (rule_.offset + rule_.scale * stored);
+        const double z = rule_.base + rule_.factor * (rule_.offset + rule_.scale * stored);
         return std::abs(z) < double(highest_m) ? static_cast<float>(z) : none;
     }
 

@@ -11,10 +11,11 @@
 
 namespace tarn::dem {
 
-/// How stored values become metres: metres = factor * (offset + scale * stored).
+/// How stored values become metres: metres = base + factor * (offset + scale * stored).
 struct HeightRule {
+    double base = 0.0;                ///< the level that depths count from
     double scale = 1.0, offset = 0.0; ///< of the band
-    double factor = 1.0;              ///< metres per unit
+    double factor = 1.0;              ///< metres per unit; negative for depths
     std::vector<double> void_values;  ///< stored values that mean no data
     bool use_mask = false;            ///< the band has a mask or alpha of its own
     bool find_forgotten = false;      ///< floating point without declared nodata: -9999 and -32768

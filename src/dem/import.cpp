@@ -38,6 +38,9 @@ void ImportOptions::validate() const {
     range("--estimate-depth", estimate_depth_m, 0.01, 2000.0);
     if (!unit.empty() && unit != "m" && unit != "ft" && unit != "us-ft")
         throw Error("--unit '" + unit + "' is not known", "give m, ft or us-ft");
+    if (depths && !level_m)
+        throw Error("--depths needs the level that they count from",
+                    "give --level M (any, if it is not known)");
     if (bathymetry && soundings)
         throw Error("--bathymetry and --soundings exclude each other",
                     "merge them before, or import with one");
@@ -111,9 +114,11 @@ double snapped(double level_m, const std::vector<FlatSurface>& flats, const Mosa
 }
 
 Node largest_basin_seed(const Mosaic& mosaic, Marks& marks, double level_m, float highest_wet_m,
-                        std::vector<std::string>& notes) {
+                        bool depths, std::vector<std::string>& notes) {
     const auto basins = find_basins(mosaic.elevation_m, marks, highest_wet_m);
-    const auto lake = largest_lake(basins);
+    auto lake = largest_lake(basins);
+    if (depths && !basins.empty()) // there the data end at the shore: every lake looks open
+        lake = basins.front();
     if (!lake)
         throw Error(text("nothing lies below the level of ", fixed(level_m, 2),
                          " m: the ground reaches from ",
@@ -213,7 +218,10 @@ void Work::open() {
     for (const auto& path : paths)
         for (Source& source : open_sources(path, {.crs = options_.crs,
                                                   .nodata = options_.nodata,
-                                                  .unit = options_.unit})) {
+                                                  .unit = options_.unit,
+                                                  .depths_below_m = options_.depths
+                                                                        ? options_.level_m
+                                                                        : std::nullopt})) {
             add_input(source, "dem");
             if (!source.unit_declared)
                 without_unit.push_back(source.name);
@@ -286,13 +294,14 @@ void Work::fill_level(double level_m, std::optional<Node> seed) {
                  place(mosaic_, *wet) + ", was taken");
         seed = wet.value_or(*seed);
     } else {
-        seed = largest_basin_seed(mosaic_, marks_, level_m, highest, report_.notes);
+        seed = largest_basin_seed(mosaic_, marks_, level_m, highest, options_.depths,
+                                  report_.notes);
     }
     FoundLake lake{.id = 1, .level_m = level_m, .seeds = {*seed}};
     const Filled filled =
         fill_from(mosaic_.elevation_m, marks_, highest, lake.seeds, 1, lake_of_);
     lake.nodes = filled.nodes;
-    lake.open_at_edge = filled.open_at_edge;
+    lake.open_at_edge = filled.open_at_edge && !options_.depths;
     lakes_.push_back(lake);
 }
 
@@ -458,6 +467,7 @@ void Work::make_bed(const FoundLake& lake, std::size_t& made) {
             {.crs = options_.bathymetry_crs,
              .nodata = std::numeric_limits<double>::quiet_NaN(), // 0 is a depth, no collar
              .unit = {},
+             .depths_below_m = {},
              .crs_hint = "give it with --bathymetry-crs EPSG:..."});
         for (Source& part : surveys) { // a zip may hold several; the last one counts, as with tiles
             if (made == 0)
@@ -582,6 +592,8 @@ std::vector<LakeRecord> Work::measure_lakes() {
 
 /// Where the main lake would spill, or does.
 void Work::tell_spill(LakeRecord& lake) {
+    if (options_.depths) // nothing is known of the land
+        return;
     const auto& z = mosaic_.elevation_m;
     const auto spill = lake.open_at_edge
                            ? find_spill(z, marks_, lakes_[0].seeds.front())
@@ -595,7 +607,7 @@ void Work::tell_spill(LakeRecord& lake) {
     lake.spill = LakeSpill{.level_m = spill->level_m,
                            .pass = geo::to_geo(mosaic_.frame, where(spill->pass)),
                            .at_surface = false};
-    const ScenePoint from = where(lake.seed), pass = where(spill->pass);
+    const ScenePoint from = where(lakes_[0].seeds.front()), pass = where(spill->pass);
     if (!lake.open_at_edge)
         return;
     // A lake that is cut by the edge leaves at its surface; one that is too high, over a pass.
@@ -614,7 +626,7 @@ void Work::tell_spill(LakeRecord& lake) {
               fixed(spill->level_m, 2), " m at ", place(mosaic_, spill->pass), ", ",
               fixed(std::hypot(pass.x_m - from.x_m, pass.y_m - from.y_m) / 1000.0, 1), " km ",
               compass(pass.x_m - from.x_m, pass.y_m - from.y_m),
-              " of the lake's middle, and runs out of the data at ", place(mosaic_, spill->exit),
+              " of the lake at ", place(mosaic_, lakes_[0].seeds.front()), ", and runs out of the data at ", place(mosaic_, spill->exit),
               "; it may rise to ", fixed(spill->level_m, 2), " m"));
 }
 

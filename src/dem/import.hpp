@@ -47,6 +47,7 @@ struct ImportOptions {
     BedChoice bed = BedChoice::automatic;
     std::optional<std::filesystem::path> ortho;
     std::optional<double> spacing_m; ///< [0.01, 100000]
+    bool depths = false;             ///< the DEMs hold depths below level_m, of either sign
     std::string crs;                 ///< replaces the DEMs' own
     std::string unit;                ///< "m", "ft", "us-ft" replaces the DEMs' own; "" keeps it
     std::optional<double> nodata;    ///< void besides what the files declare

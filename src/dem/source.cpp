@@ -276,7 +276,18 @@ void to_metres(Source& source, const SourceOptions& options) {
     rule.use_mask = (band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) != 0;
     rule.find_forgotten = !declared && GDALDataTypeIsFloating(band.GetRasterDataType());
     source.findings = std::make_shared<HeightFindings>();
-    if (!declared && !rule.use_mask && !options.nodata) {
+    if (options.depths_below_m) {
+        double least = 0.0, greatest = 0.0, mean = 0.0, deviation = 0.0;
+        const Dataset plain = view_heights(ds, source.band, rule, source.findings);
+        if (plain->GetRasterBand(1)->ComputeStatistics(TRUE, &least, &greatest, &mean, &deviation,
+                                                       nullptr, nullptr) != CE_None)
+            throw Error(source.name + ": holds no depths (" + messages.last() + ")");
+        rule.base = *options.depths_below_m;
+        rule.factor = mean < 0.0 ? rule.factor : -rule.factor;
+        source.notes.push_back(text(source.name, ": its values are depths, ",
+                                    mean < 0.0 ? "negative" : "positive", " down, below ",
+                                    *options.depths_below_m, " m (--depths)"));
+    } else if (!declared && !rule.use_mask && !options.nodata) {
         const Dataset plain = view_heights(ds, source.band, rule, source.findings);
         if (const std::size_t zeros = collar_nodes(*plain, source.name)) {
             rule.void_values.push_back(-rule.offset / rule.scale);

@@ -37,6 +37,7 @@ struct SourceOptions {
     std::optional<double> nodata; ///< void besides what the files declare; NaN: only those, and
                                   ///< no collar of zeros is looked for
     std::string unit;             ///< "m", "ft", "us-ft": instead of what the files declare
+    std::optional<double> depths_below_m; ///< the values are depths (of either sign) below this
     std::string crs_hint = "give one with --crs EPSG:..."; ///< what a missing CRS's message says
 };
 

@@ -213,7 +213,7 @@ TEST(Flat, RowByRowFindsWhatAWholeSearchFinds) {
                     int equal = 0;
                     each_neighbour(z.size, at, [&](Node n) {
                         equal += z[n] == z[at];
-                        if (z[n] == z[at] && (n.col == at.col || n.row == at.row) && !seen[n]) {
+                        if (z[n] == z[at] && !seen[n]) {
                             seen[n] = 1;
                             members.push_back(n);
                         }
