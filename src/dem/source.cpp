@@ -214,6 +214,8 @@ double height_factor(Source& source, const std::string& asked) {
 std::size_t collar_nodes(GDALDataset& heights, const std::string& name) {
     GDALRasterBand& band = *heights.GetRasterBand(1);
     const int cols = heights.GetRasterXSize(), rows = heights.GetRasterYSize();
+    if (std::max(cols, rows) > 100'000) // no cut-out, but the mosaic of a country
+        return 0;
     GdalMessages messages;
     std::vector<float> line(std::size_t(std::max(cols, rows)));
     const auto read = [&](int x, int y, int w, int h) {
