@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace tarn::dem {
 
@@ -24,6 +25,9 @@ public:
     HeightBand(GDALDataset* owner, GDALRasterBand& source, HeightRule rule,
                std::shared_ptr<HeightFindings> findings)
         : source_(source), rule_(std::move(rule)), findings_(std::move(findings)) {
+        const std::string driver =
+            source.GetDataset() ? source.GetDataset()->GetDriverName() : "";
+        by_lines_ = driver == "AAIGrid" || driver == "GRASSASCIIGrid" || driver == "ISG";
         for (const double v : rule_.void_values)
             float_voids_.push_back(static_cast<float>(v));
         poDS = owner;
@@ -62,6 +66,15 @@ private:
     /// @param stride  floats from one row of `out` to the next
     CPLErr read(int x, int y, int cols, int rows, float* out, GSpacing stride) {
         const auto width = std::size_t(cols);
+        // GDAL finds a line of an ASCII grid by calling itself for the line before: with a header
+        // that lies about their number that never ends, or ends the stack. Line by line it is safe.
+        for (; by_lines_ && lines_known_ < y; ++lines_known_) {
+            double first = 0.0;
+            if (source_.RasterIO(GF_Read, 0, lines_known_, 1, 1, &first, 1, 1, GDT_Float64, 0,
+                                 0) != CE_None)
+                return CE_Failure;
+        }
+        lines_known_ = std::max(lines_known_, y + 1);
         // Whole metres and floats are exact as float; what is scaled or wider is not.
         const GDALDataType stored = source_.GetRasterDataType();
         const bool plain = rule_.base == 0.0 && rule_.scale == 1.0 &&
@@ -138,6 +151,8 @@ private:
     HeightRule rule_;
     std::vector<float> float_voids_;
     std::shared_ptr<HeightFindings> findings_;
+    bool by_lines_ = false;
+    int lines_known_ = 0;
     std::vector<double> wide_; ///< scratch
     std::vector<unsigned char> mask_;
 };

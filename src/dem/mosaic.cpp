@@ -712,20 +712,52 @@ void keep_flats(Grid<float>& z, const Target& target,
     });
 }
 
+/// The box of all sources [deg]. Tiles on both sides of the 180th meridian are brought side by side:
+/// those west of it count on beyond 180 degrees.
+Extent join_over_the_date_line(std::vector<Source>& sources) {
+    const auto box_of = [](const Source& source) {
+        auto to = between(source.crs, wgs84());
+        return image_of(outline(source), *to, source.name);
+    };
+    Extent all;
+    std::vector<Extent> boxes;
+    for (const Source& source : sources) {
+        boxes.push_back(box_of(source));
+        all.add(boxes.back().west, boxes.back().south);
+        all.add(boxes.back().east, boxes.back().north);
+    }
+    if (all.east - all.west <= 180.0)
+        return all;
+    Extent joined;
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        if (boxes[i].east <= 0.0 && sources[i].crs.IsGeographic()) {
+            sources[i].transform.v[0] += 360.0;
+            sources[i].raster->SetGeoTransform(sources[i].transform.v);
+            boxes[i].west += 360.0;
+            boxes[i].east += 360.0;
+        }
+        joined.add(boxes[i].west, boxes[i].south);
+        joined.add(boxes[i].east, boxes[i].north);
+    }
+    return joined;
+}
+
 Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
                      const Progress& progress) {
-    Extent all;
-    for (Source& source : sources) {
-        auto to = between(source.crs, wgs84());
-        const Extent box = image_of(outline(source), *to, source.name);
-        all.add(box.west, box.south);
-        all.add(box.east, box.north);
-    }
+    Extent all = join_over_the_date_line(sources);
     if (all.east - all.west > 60.0 || all.north - all.south > 60.0)
         throw Error(text("the data reach over ", fixed(all.east - all.west, 1), " x ",
                          fixed(all.north - all.south, 1), " degrees"),
                     "one scene serves one lake's surroundings: cut it with --at and --radius");
-    Extent region = wanted_extent(all, options.bounds, wgs84());
+    std::optional<Bounds> bounds = options.bounds;
+    if (bounds) { // a place may be counted from either side of the 180th meridian
+        const double turn = bounds->east_deg < all.west ? 360.0
+                            : bounds->west_deg > all.east ? -360.0
+                                                          : 0.0;
+        bounds->west_deg += turn;
+        bounds->east_deg += turn;
+    }
+    Extent region = wanted_extent(all, bounds, wgs84());
 
     Mosaic out;
     out.frame =

@@ -94,7 +94,8 @@ Source open_one(const std::string& path, const std::string& crs, const std::stri
         throw Error(path + ": no such file", "check the path");
     source.original.reset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
     if (!source.original)
-        throw Error(source.name + ": GDAL cannot read it (" + messages.last() + ")",
+        throw Error(source.name + ": GDAL cannot read it (" +
+                        (messages.warned() ? messages.last() : "no format that it knows") + ")",
                     "try gdalinfo on it");
     GDALDataset& ds = *source.original;
     source.cols = ds.GetRasterXSize();

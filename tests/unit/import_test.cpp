@@ -202,6 +202,33 @@ TEST(Import, BadInputGetsOneClearLine) {
                  Cancelled);
 }
 
+TEST(Import, TilesOnBothSidesOfTheDateLineAreJoined) {
+    // A lake across 180 degrees, from an eastern and a western tile.
+    const TempFolder folder;
+    const double step = 1.0 / 1200.0;
+    const geo::Frame local = geo::local_frame({-17.0, 180.0});
+    for (int side = 0; side < 2; ++side) {
+        Grid<float> z({120, 120});
+        const double west = side == 0 ? 180.0 - 120 * step : -180.0;
+        for (int r = 0; r < 120; ++r)
+            for (int c = 0; c < 120; ++c) {
+                const ScenePoint p = geo::to_scene(
+                    local, {-17.0 + (59.5 - r) * step, west + (c + 0.5) * step});
+                z[{c, r}] = float(std::max(50.0, 0.05 * std::hypot(p.x_m, p.y_m)));
+            }
+        write(folder / (side ? "w.tif" : "e.tif"), z, west, -17.0 + 60 * step, step, "EPSG:4326");
+    }
+    for (const double lon : {179.999, -179.999}) {
+        const auto result = dem::import_dem({.dems = {folder / "e.tif", folder / "w.tif"},
+                                             .at = GeoPoint{-17.0, lon},
+                                             .radius_km = 4.0},
+                                            {});
+        // Both halves; cells of 92 x 88 m make the circle.
+        EXPECT_NEAR(only(result).area_m2, M_PI * 1e6, 0.05 * M_PI * 1e6);
+        EXPECT_FALSE(only(result).open_at_edge);
+    }
+}
+
 TEST(Import, NoTileIsDroppedForItsVerticalDatum) {
     const TempFolder folder;
     const Grid<float> whole = bowl(200, 5.0);
