@@ -43,8 +43,7 @@ void add_detect(CLI::App& app, Run& run) {
     c->callback([words, &run] {
         run = [words] {
             read_dem_words(words->dem);
-            const dem::Detection found =
-                dem::detect_lakes(words->dem.options, console_progress());
+            const dem::Detection found = dem::detect_lakes(words->dem.options, console_progress());
             end_progress();
             if (words->json)
                 std::cout << scene_files::detection_json(found.lakes, found.report);

@@ -94,15 +94,18 @@ int run_stats(const Words& words) {
                                                    *lake, levels, words.neighbours, progress);
     end_progress();
     const bool json = words.json || words.output.ends_with(".json");
-    const std::string content = json ? scene_files::stages_json(*lake, table.spill, [&] {
-        std::vector<scene_files::StageRow> rows;
-        for (const dem::Stage& s : table.stages)
-            rows.push_back({s.level_m, s.area_m2, s.true_area_m2, s.volume_m3, s.true_volume_m3,
-                            s.max_depth_m, s.mean_depth_m, s.shoreline_m, s.islands, s.pools,
-                            s.open_at_edge});
-        return rows;
-    }())
-                                     : csv(table);
+    const std::string content =
+        json ? scene_files::stages_json(
+                   *lake, table.spill,
+                   [&] {
+                       std::vector<scene_files::StageRow> rows;
+                       for (const dem::Stage& s : table.stages)
+                           rows.push_back({s.level_m, s.area_m2, s.true_area_m2, s.volume_m3,
+                                           s.true_volume_m3, s.max_depth_m, s.mean_depth_m,
+                                           s.shoreline_m, s.islands, s.pools, s.open_at_edge});
+                       return rows;
+                   }())
+             : csv(table);
     if (words.output.empty())
         std::cout << content;
     else
@@ -122,8 +125,8 @@ int run_stats(const Words& words) {
         for (const dem::Stage& s : table.stages)
             if (!s.open_at_edge || cut)
                 plot.points.push_back(
-                {s.level_m, s.area_m2 / 1e6,
-                 s.volume_m3 ? *s.volume_m3 / 1e6 : std::numeric_limits<double>::quiet_NaN()});
+                    {s.level_m, s.area_m2 / 1e6,
+                     s.volume_m3 ? *s.volume_m3 / 1e6 : std::numeric_limits<double>::quiet_NaN()});
         std::sort(plot.points.begin(), plot.points.end(),
                   [](const auto& a, const auto& b) { return a.level_m < b.level_m; });
         if (plot.points.empty())

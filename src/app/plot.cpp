@@ -71,20 +71,18 @@ void draw_stages(const StagePlot& plot, const fs::path& path) {
                   "set x2range [0:*]\n";
     const auto line = [&](int tag, double level, const char* what) {
         if (level >= low && level <= high)
-            script += text("set arrow ", tag, " from graph 0, first ", level,
-                           " to graph 1, first ", level, " nohead dashtype 2 lc rgb '#555555'\n",
-                           "set label ", tag, " '", what, " ", fixed(level, 2),
-                           " m' at graph 0.02, first ", level,
+            script += text("set arrow ", tag, " from graph 0, first ", level, " to graph 1, first ",
+                           level, " nohead dashtype 2 lc rgb '#555555'\n", "set label ", tag, " '",
+                           what, " ", fixed(level, 2), " m' at graph 0.02, first ", level,
                            " offset 0,0.6 textcolor rgb '#333333'\n");
     };
     line(1, plot.lake_level_m, "lake level");
     line(2, plot.spill_level_m, "spills above");
     script += "$data << END\n";
     for (const auto& p : plot.points)
-        script += text(p.level_m, " ", p.area_km2, " ",
-                       std::isnan(p.volume_million_m3) ? std::string("NaN")
-                                                       : text(p.volume_million_m3),
-                       "\n");
+        script += text(
+            p.level_m, " ", p.area_km2, " ",
+            std::isnan(p.volume_million_m3) ? std::string("NaN") : text(p.volume_million_m3), "\n");
     script += "END\nplot $data using 2:1 with lines lw 2.5 lc rgb '#1f5fa8' title 'area'";
     if (volumes)
         script += ", $data using 3:1 axes x2y1 with lines lw 2.5 lc rgb '#b0482f' title 'volume'";

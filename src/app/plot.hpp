@@ -12,9 +12,9 @@ struct StagePlot {
     struct Point {
         double level_m, area_km2, volume_million_m3;
     };
-    std::vector<Point> points;    ///< volume NaN where the bed is unknown
-    double lake_level_m = 0.0;    ///< drawn as a line
-    double spill_level_m = 0.0;   ///< drawn as a line if it lies within the plot
+    std::vector<Point> points;  ///< volume NaN where the bed is unknown
+    double lake_level_m = 0.0;  ///< drawn as a line
+    double spill_level_m = 0.0; ///< drawn as a line if it lies within the plot
 };
 
 /// @param path  .png, .svg or .pdf

@@ -74,7 +74,10 @@ Picture draw_preview(const scene::Scene& scene, int side_px) {
     const LakeRecord& lake = scene.lakes.front();
     const std::string title = (lake.name.empty() ? "" : lake.name + ", ") + "level " +
                               fixed(lake.level_m, 2) + " m, " + fixed(lake.area_m2 / 1e6, 2) +
-                              " km2" + (lake.bed == Bed::unknown ? ", bed unknown" : "");
+                              " km2" +
+                              (lake.bed == Bed::unknown     ? ", bed unknown"
+                               : lake.bed == Bed::estimated ? ", bed ESTIMATED"
+                                                            : "");
     image::draw_text(out, margin, margin + size, size, title);
     return out;
 }

@@ -4,11 +4,16 @@
 #include "core/text.hpp"
 #include "geo/frame.hpp"
 
+#include <algorithm>
 #include <ctime>
 
 namespace tarn::app {
 
 namespace {
+
+std::string bed_words(const LakeRecord& lake) {
+    return lake.bed == Bed::estimated ? "ESTIMATED, no survey" : to_string(lake.bed);
+}
 
 std::string lake_lines(const LakeRecord& lake) {
     std::string out = text("lake ", lake.id, lake.name.empty() ? "" : " " + lake.name, " at ",
@@ -19,21 +24,45 @@ std::string lake_lines(const LakeRecord& lake) {
     if (!lake.volume_m3 || !lake.max_depth_m || !lake.mean_depth_m)
         out += "  bed         unknown: no volume, no depth\n";
     else
-        out += text("  volume      ", format_volume(*lake.volume_m3), "\n  depth       ",
-                    fixed(*lake.max_depth_m, 2), " m greatest, ", fixed(*lake.mean_depth_m, 2),
-                    " m mean (bed ", to_string(lake.bed), ")\n");
+        out +=
+            text("  volume      ", format_volume(*lake.volume_m3), " in the grid's projection, ",
+                 format_volume(lake.true_volume_m3.value_or(*lake.volume_m3)),
+                 " on the ellipsoid\n  depth       ", fixed(*lake.max_depth_m, 2), " m greatest, ",
+                 fixed(*lake.mean_depth_m, 2), " m mean (bed ", bed_words(lake), ")\n");
     out += text("  shoreline   ", fixed(lake.shoreline_m / 1000.0, 2), " km, ", lake.islands,
                 lake.islands == 1 ? " island" : " islands",
                 lake.open_at_edge ? "; open at the edge of the data" : "", "\n");
+    if (lake.spill && !lake.spill->at_surface)
+        out +=
+            text("  may rise    to ", fixed(lake.spill->level_m, 2), " m; then it spills over ",
+                 fixed(lake.spill->pass.lat_deg, 5), ",", fixed(lake.spill->pass.lon_deg, 5), "\n");
+    return out;
+}
+
+/// The lakes after the main one, a line each.
+std::string other_lakes(const std::vector<LakeRecord>& lakes, std::size_t most) {
+    if (lakes.size() < 2)
+        return {};
+    std::string out =
+        text("other water: ", lakes.size() - 1,
+             lakes.size() == 2 ? " surface at its own level\n" : " surfaces at their own levels\n");
+    for (std::size_t i = 1; i < std::min(lakes.size(), most + 1); ++i) {
+        const LakeRecord& lake = lakes[i];
+        out += text("  ", lake.id, lake.name.empty() ? "" : " " + lake.name, ": ",
+                    fixed(lake.level_m, 2), " m, ", format_area(lake.area_m2), " at ",
+                    fixed(lake.position.lat_deg, 4), ",", fixed(lake.position.lon_deg, 4),
+                    lake.bed == Bed::unknown ? "" : text(", bed ", bed_words(lake)),
+                    lake.open_at_edge ? ", open at the edge of the data" : "", "\n");
+    }
+    if (lakes.size() > most + 1)
+        out += text("  ... and ", lakes.size() - 1 - most, " more: tarn info lists them\n");
     return out;
 }
 
 } // namespace
 
 std::string summary(const scene::Scene& scene) {
-    std::string out;
-    for (const LakeRecord& lake : scene.lakes)
-        out += lake_lines(lake);
+    std::string out = lake_lines(scene.lakes.front()) + other_lakes(scene.lakes, 8);
     for (const std::string& note : scene.report.notes)
         out += "  note: " + note + "\n";
     return out;
@@ -42,9 +71,7 @@ std::string summary(const scene::Scene& scene) {
 std::string full_report(const scene::Scene& scene) {
     const Heightfield& g = scene.ground;
     const GeoPoint origin = geo::to_geo(scene.frame, {0.0, 0.0});
-    std::string out;
-    for (const LakeRecord& lake : scene.lakes)
-        out += lake_lines(lake);
+    std::string out = lake_lines(scene.lakes.front()) + other_lakes(scene.lakes, 100'000);
     out += text("grid        ", g.size().cols, " x ", g.size().rows, " nodes, ", g.spacing_m,
                 " m apart: ", fixed((g.size().cols - 1) * g.spacing_m / 1000, 2), " x ",
                 fixed((g.size().rows - 1) * g.spacing_m / 1000, 2), " km\n");

@@ -206,8 +206,7 @@ void estimate_depths(Grid<float>& z, const BedPlace& place, double max_depth_m) 
                              nullptr) != CE_None ||
         transfer(far, GF_Read, distance.values.data(), GDT_Float32) != CE_None)
         throw Error("distances to the shore cannot be worked out (" + messages.last() + ")");
-    const double greatest =
-        *std::max_element(distance.values.begin(), distance.values.end()) - 0.5;
+    const double greatest = *std::max_element(distance.values.begin(), distance.values.end()) - 0.5;
     each_in(box, [&](Node n) {
         if (!place.surface(n))
             return;

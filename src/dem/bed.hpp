@@ -23,17 +23,16 @@ struct BedPlace {
     const LakeOf& lake_of;
     const Marks& marks;
     int id = 1;
-    Box box;               ///< of the lake's nodes
-    double surface_m = 0.0; ///< the water's height from which depths count
+    Box box;                    ///< of the lake's nodes
+    double surface_m = 0.0;     ///< the water's height from which depths count
     bool surface_known = false; ///< the DEM holds the water's surface: only its nodes are replaced
 
     bool wet(Node n) const { return lake_of.contains(n) && lake_of[n] == id; }
     /// A node whose ground the DEM does not know.
     bool surface(Node n) const {
-        return wet(n) &&
-               (!surface_known || (marks[n] & (mark::flat | mark::filled)) != 0);
+        return wet(n) && (!surface_known || (marks[n] & (mark::flat | mark::filled)) != 0);
     }
-    Box widened() const; ///< the box and one node around it, within the grid
+    Box widened() const;   ///< the box and one node around it, within the grid
     GridSize size() const; ///< of the widened box
 };
 

@@ -168,8 +168,8 @@ std::optional<Basin> largest_lake(const std::vector<Basin>& basins) {
     return {};
 }
 
-std::optional<Node> nearest_wet(const Grid<float>& z, const Marks& marks, float highest_wet_m, Node from,
-                                int reach) {
+std::optional<Node> nearest_wet(const Grid<float>& z, const Marks& marks, float highest_wet_m,
+                                Node from, int reach) {
     std::optional<Node> best;
     long best_squared = long(reach) * reach + 1;
     for (int dr = -reach; dr <= reach; ++dr)
@@ -202,8 +202,8 @@ std::optional<Spill> rise(const Grid<float>& z, Marks& marks, std::priority_queu
             spill.at_surface = false;
         }
         const Node at = step.at;
-        bool edge = at.col == 0 || at.row == 0 || at.col + 1 == z.size.cols ||
-                    at.row + 1 == z.size.rows;
+        bool edge =
+            at.col == 0 || at.row == 0 || at.col + 1 == z.size.cols || at.row + 1 == z.size.rows;
         each_neighbour(z.size, at, [&](Node n) { edge |= (marks[n] & mark::outside) != 0; });
         if (edge) {
             spill.exit = at;
@@ -251,8 +251,8 @@ std::optional<Spill> find_spill(const Grid<float>& z, Marks& marks, Node seed, d
     marks[seed] |= mark::seen;
     rim.push({z[seed], seed});
     return rise(z, marks, std::move(rim),
-                {.level_m = double(z[seed]), .pass = seed, .exit = seed, .at_surface = true}, {seed},
-                up_to_m);
+                {.level_m = double(z[seed]), .pass = seed, .exit = seed, .at_surface = true},
+                {seed}, up_to_m);
 }
 
 } // namespace tarn::dem

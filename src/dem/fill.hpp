@@ -47,7 +47,8 @@ Filled fill_from(const Grid<float>& elevation_m, const Marks& marks, float highe
                  double floor_m = -std::numeric_limits<double>::infinity());
 
 /// As fill_from() without a floor, but gives up as soon as the water leaves the data or runs into
-/// another lake: then nothing is filled. It looks downhill first, so that it soon finds a way out if there is one.
+/// another lake: then nothing is filled. It looks downhill first, so that it soon finds a way out
+/// if there is one.
 std::optional<Filled> fill_closed(const Grid<float>& elevation_m, const Marks& marks,
                                   float highest_wet_m, Node seed, int id, LakeOf& lake_of);
 
@@ -55,8 +56,7 @@ std::optional<Filled> fill_closed(const Grid<float>& elevation_m, const Marks& m
 void drain(LakeOf& lake_of, std::span<const Node> seeds);
 
 /// Every 8-connected region that a level wets, largest first. Uses mark::seen.
-std::vector<Basin> find_basins(const Grid<float>& elevation_m, Marks& marks,
-                               float highest_wet_m);
+std::vector<Basin> find_basins(const Grid<float>& elevation_m, Marks& marks, float highest_wet_m);
 
 /// The basin that people would call the lake: the largest that is closed, or that is open at the
 /// data's edge but for the greater part a water surface at this very level.
@@ -68,9 +68,9 @@ std::optional<Node> nearest_wet(const Grid<float>& elevation_m, const Marks& mar
 
 /// How water that rises from a lake leaves the data.
 struct Spill {
-    double level_m = 0.0;   ///< the highest ground on its way: the lake may rise to this
-    Node pass;              ///< where that is
-    Node exit;              ///< the node at the edge of the data where it leaves
+    double level_m = 0.0;    ///< the highest ground on its way: the lake may rise to this
+    Node pass;               ///< where that is
+    Node exit;               ///< the node at the edge of the data where it leaves
     bool at_surface = false; ///< it need not rise: the edge of the data cuts the lake
 };
 

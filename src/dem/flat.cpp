@@ -185,12 +185,10 @@ std::vector<FlatSurface> FlatFinder::finish() {
     open_.clear();
     pieces_above_.clear();
     const bool stepped = pairs_ > 0 && double(chance_pairs_) > stepped_share * double(pairs_);
-    std::erase_if(kept_, [&](const FlatSurface& s) {
-        return stepped && s.lower_share() > most_lower_share;
-    });
-    std::stable_sort(kept_.begin(), kept_.end(), [](const FlatSurface& a, const FlatSurface& b) {
-        return a.nodes > b.nodes;
-    });
+    std::erase_if(
+        kept_, [&](const FlatSurface& s) { return stepped && s.lower_share() > most_lower_share; });
+    std::stable_sort(kept_.begin(), kept_.end(),
+                     [](const FlatSurface& a, const FlatSurface& b) { return a.nodes > b.nodes; });
     return std::move(kept_);
 }
 

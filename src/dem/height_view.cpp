@@ -25,8 +25,7 @@ public:
     HeightBand(GDALDataset* owner, GDALRasterBand& source, HeightRule rule,
                std::shared_ptr<HeightFindings> findings)
         : source_(source), rule_(std::move(rule)), findings_(std::move(findings)) {
-        const std::string driver =
-            source.GetDataset() ? source.GetDataset()->GetDriverName() : "";
+        const std::string driver = source.GetDataset() ? source.GetDataset()->GetDriverName() : "";
         by_lines_ = driver == "AAIGrid" || driver == "GRASSASCIIGrid" || driver == "ISG";
         for (const double v : rule_.void_values)
             float_voids_.push_back(static_cast<float>(v));
@@ -43,13 +42,11 @@ public:
         eAccess = GA_ReadOnly;
     }
 
-
 protected:
     CPLErr IReadBlock(int x_block, int y_block, void* out) override {
         const int x = x_block * nBlockXSize, y = y_block * nBlockYSize;
         return read(x, y, std::min(nBlockXSize, nRasterXSize - x),
-                    std::min(nBlockYSize, nRasterYSize - y), static_cast<float*>(out),
-                    nBlockXSize);
+                    std::min(nBlockYSize, nRasterYSize - y), static_cast<float*>(out), nBlockXSize);
     }
     /// Whole windows of floats go straight through, not by way of blocks of our own.
     CPLErr IRasterIO(GDALRWFlag way, int x, int y, int cols, int rows, void* out, int out_cols,
@@ -70,17 +67,17 @@ private:
         // that lies about their number that never ends, or ends the stack. Line by line it is safe.
         for (; by_lines_ && lines_known_ < y; ++lines_known_) {
             double first = 0.0;
-            if (source_.RasterIO(GF_Read, 0, lines_known_, 1, 1, &first, 1, 1, GDT_Float64, 0,
-                                 0) != CE_None)
+            if (source_.RasterIO(GF_Read, 0, lines_known_, 1, 1, &first, 1, 1, GDT_Float64, 0, 0) !=
+                CE_None)
                 return CE_Failure;
         }
         lines_known_ = std::max(lines_known_, y + 1);
         // Whole metres and floats are exact as float; what is scaled or wider is not.
         const GDALDataType stored = source_.GetRasterDataType();
-        const bool plain = rule_.base == 0.0 && rule_.scale == 1.0 &&
-                           rule_.offset == 0.0 && rule_.factor == 1.0 &&
-                           (stored == GDT_Float32 || stored == GDT_Int16 ||
-                            stored == GDT_UInt16 || stored == GDT_Byte);
+        const bool plain = rule_.base == 0.0 && rule_.scale == 1.0 && rule_.offset == 0.0 &&
+                           rule_.factor == 1.0 &&
+                           (stored == GDT_Float32 || stored == GDT_Int16 || stored == GDT_UInt16 ||
+                            stored == GDT_Byte);
         if (plain) {
             if (source_.RasterIO(GF_Read, x, y, cols, rows, out, cols, rows, GDT_Float32, 4,
                                  stride * 4) != CE_None)
@@ -211,8 +208,7 @@ protected:
     CPLErr IReadBlock(int x_block, int y_block, void* out) override {
         const int x = x_block * nBlockXSize, y = y_block * nBlockYSize;
         return read(x, y, std::min(nBlockXSize, nRasterXSize - x),
-                    std::min(nBlockYSize, nRasterYSize - y), static_cast<float*>(out),
-                    nBlockXSize);
+                    std::min(nBlockYSize, nRasterYSize - y), static_cast<float*>(out), nBlockXSize);
     }
     CPLErr IRasterIO(GDALRWFlag way, int x, int y, int cols, int rows, void* out, int out_cols,
                      int out_rows, GDALDataType type, GSpacing pixel, GSpacing line,

@@ -88,8 +88,8 @@ std::string place(const Mosaic& mosaic, Node n) {
 
 /// Eight winds, for people.
 const char* compass(double dx, double dy) {
-    static const char* winds[] = {"east",  "north-east", "north",  "north-west",
-                                  "west",  "south-west", "south",  "south-east"};
+    static const char* winds[] = {"east", "north-east", "north", "north-west",
+                                  "west", "south-west", "south", "south-east"};
     const double turns = std::atan2(dy, dx) / (2.0 * M_PI) * 8.0;
     return winds[std::size_t(std::lround(turns) + 8) % 8];
 }
@@ -216,12 +216,11 @@ void Work::open() {
         report_.notes.insert(report_.notes.end(), fetched.notes.begin(), fetched.notes.end());
     }
     for (const auto& path : paths)
-        for (Source& source : open_sources(path, {.crs = options_.crs,
-                                                  .nodata = options_.nodata,
-                                                  .unit = options_.unit,
-                                                  .depths_below_m = options_.depths
-                                                                        ? options_.level_m
-                                                                        : std::nullopt})) {
+        for (Source& source : open_sources(
+                 path, {.crs = options_.crs,
+                       .nodata = options_.nodata,
+                       .unit = options_.unit,
+                       .depths_below_m = options_.depths ? options_.level_m : std::nullopt})) {
             add_input(source, "dem");
             if (!source.unit_declared)
                 without_unit.push_back(source.name);
@@ -268,8 +267,7 @@ void Work::find_surfaces() {
     report_.void_nodes = voids.all;
     report_.filled_nodes = voids.inside;
     report_.outside_nodes = voids.all - voids.inside;
-    surfaces_ =
-        complete_surfaces(mosaic_.elevation_m, marks_, std::move(flats), report_.notes);
+    surfaces_ = complete_surfaces(mosaic_.elevation_m, marks_, std::move(flats), report_.notes);
     std::size_t flat = 0;
     for (const unsigned char m : marks_.values)
         flat += (m & mark::flat) != 0;
@@ -294,12 +292,11 @@ void Work::fill_level(double level_m, std::optional<Node> seed) {
                  place(mosaic_, *wet) + ", was taken");
         seed = wet.value_or(*seed);
     } else {
-        seed = largest_basin_seed(mosaic_, marks_, level_m, highest, options_.depths,
-                                  report_.notes);
+        seed =
+            largest_basin_seed(mosaic_, marks_, level_m, highest, options_.depths, report_.notes);
     }
     FoundLake lake{.id = 1, .level_m = level_m, .seeds = {*seed}};
-    const Filled filled =
-        fill_from(mosaic_.elevation_m, marks_, highest, lake.seeds, 1, lake_of_);
+    const Filled filled = fill_from(mosaic_.elevation_m, marks_, highest, lake.seeds, 1, lake_of_);
     lake.nodes = filled.nodes;
     lake.open_at_edge = filled.open_at_edge && !options_.depths;
     lakes_.push_back(lake);
@@ -472,8 +469,7 @@ void Work::make_bed(const FoundLake& lake, std::size_t& made) {
         for (Source& part : surveys) { // a zip may hold several; the last one counts, as with tiles
             if (made == 0)
                 add_input(part, "bathymetry");
-            const Grid<float> values =
-                onto_grid(part, mosaic_, box.first, survey.size, "bilinear");
+            const Grid<float> values = onto_grid(part, mosaic_, box.first, survey.size, "bilinear");
             for (std::size_t i = 0; i < survey.values.size(); ++i)
                 if (!std::isnan(values.values[i]))
                     survey.values[i] = values.values[i];
@@ -581,8 +577,8 @@ std::vector<LakeRecord> Work::measure_lakes() {
         record.level_m = lakes_[k].level_m;
         record.open_at_edge = lakes_[k].open_at_edge;
         record.flat_share = flat_share_[k];
-        record.bed = beds_.empty() ? (flat_share_[k] > 0.5 ? Bed::unknown : Bed::measured)
-                                   : beds_[k];
+        record.bed =
+            beds_.empty() ? (flat_share_[k] > 0.5 ? Bed::unknown : Bed::measured) : beds_[k];
         if (lakes_[k].nodes > 0)
             measure(record, surface(), lake_of_, boxes_[k], mosaic_.frame);
         out.push_back(record);
@@ -595,9 +591,8 @@ void Work::tell_spill(LakeRecord& lake) {
     if (options_.depths) // nothing is known of the land
         return;
     const auto& z = mosaic_.elevation_m;
-    const auto spill = lake.open_at_edge
-                           ? find_spill(z, marks_, lakes_[0].seeds.front())
-                           : find_spill(z, marks_, lake_of_, 1, lake.level_m);
+    const auto spill = lake.open_at_edge ? find_spill(z, marks_, lakes_[0].seeds.front())
+                                         : find_spill(z, marks_, lake_of_, 1, lake.level_m);
     if (!spill)
         return;
     const auto where = [&](Node n) {
@@ -625,9 +620,9 @@ void Work::tell_spill(LakeRecord& lake) {
     note(text("at ", fixed(lake.level_m, 2), " m the water spills over a pass of ",
               fixed(spill->level_m, 2), " m at ", place(mosaic_, spill->pass), ", ",
               fixed(std::hypot(pass.x_m - from.x_m, pass.y_m - from.y_m) / 1000.0, 1), " km ",
-              compass(pass.x_m - from.x_m, pass.y_m - from.y_m),
-              " of the lake at ", place(mosaic_, lakes_[0].seeds.front()), ", and runs out of the data at ", place(mosaic_, spill->exit),
-              "; it may rise to ", fixed(spill->level_m, 2), " m"));
+              compass(pass.x_m - from.x_m, pass.y_m - from.y_m), " of the lake at ",
+              place(mosaic_, lakes_[0].seeds.front()), ", and runs out of the data at ",
+              place(mosaic_, spill->exit), "; it may rise to ", fixed(spill->level_m, 2), " m"));
 }
 
 ImportResult Work::pack(std::vector<LakeRecord> lakes, const HeightsSink& keep_heights) {

@@ -35,15 +35,15 @@ struct ImportOptions {
     std::optional<double> radius_km; ///< around `at`, (0, 500]
     std::optional<Bounds> bounds;
     LakeChoice lakes = LakeChoice::all;
-    double min_area_km2 = 0.02; ///< smaller lakes are not found, [0, 1e6]
+    double min_area_km2 = 0.02;                      ///< smaller lakes are not found, [0, 1e6]
     std::optional<std::filesystem::path> bathymetry; ///< raster
     std::optional<std::filesystem::path> soundings;  ///< points or contours
     BathymetryKind bathymetry_kind = BathymetryKind::automatic;
-    std::string bathymetry_crs;        ///< replaces the bathymetry's (or soundings') own
-    double bathymetry_offset_m = 0.0;  ///< added to its elevations: difference of the datums
+    std::string bathymetry_crs;               ///< replaces the bathymetry's (or soundings') own
+    double bathymetry_offset_m = 0.0;         ///< added to its elevations: difference of the datums
     std::optional<double> bathymetry_level_m; ///< level that its depths count from
-    std::string depth_field;           ///< of the soundings; "" looks for one
-    std::optional<double> estimate_depth_m; ///< greatest depth of an estimated bed, (0, 2000]
+    std::string depth_field;                  ///< of the soundings; "" looks for one
+    std::optional<double> estimate_depth_m;   ///< greatest depth of an estimated bed, (0, 2000]
     BedChoice bed = BedChoice::automatic;
     std::optional<std::filesystem::path> ortho;
     std::optional<double> spacing_m; ///< [0.01, 100000]

@@ -16,9 +16,8 @@ constexpr double dam_m = 1.0;
 constexpr int bay_reach = 6; // nodes between a lake and a patch of its level that is its bay
 
 std::vector<Run> runs_of(std::vector<Node> nodes) {
-    std::sort(nodes.begin(), nodes.end(), [](Node a, Node b) {
-        return a.row != b.row ? a.row < b.row : a.col < b.col;
-    });
+    std::sort(nodes.begin(), nodes.end(),
+              [](Node a, Node b) { return a.row != b.row ? a.row < b.row : a.col < b.col; });
     std::vector<Run> out;
     for (const Node n : nodes)
         if (!out.empty() && out.back().row == n.row && out.back().last + 1 == n.col)
@@ -39,9 +38,10 @@ FlatSurface surface_of(const std::vector<Node>& nodes, float level_m) {
     out.level_m = level_m;
     out.nodes = nodes.size();
     out.runs = runs_of(nodes);
-    const Run& run = *std::max_element(
-        out.runs.begin(), out.runs.end(),
-        [](const Run& a, const Run& b) { return a.last - a.first < b.last - b.first; });
+    const Run& run =
+        *std::max_element(out.runs.begin(), out.runs.end(), [](const Run& a, const Run& b) {
+            return a.last - a.first < b.last - b.first;
+        });
     out.middle = {(run.first + run.last) / 2, run.row};
     return out;
 }
@@ -88,14 +88,12 @@ void void_water(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces
                 continue;
             std::sort(rim.begin(), rim.end());
             const float low = rim[rim.size() / 20];
-            const auto even = std::count_if(rim.begin(), rim.end(), [&](float v) {
-                return std::abs(v - low) <= even_m;
-            });
+            const auto even = std::count_if(rim.begin(), rim.end(),
+                                            [&](float v) { return std::abs(v - low) <= even_m; });
             if (double(even) < 0.6 * double(rim.size()))
                 continue;
             // The water stands at the lowest of its banks, but for a stray low one.
-            found.push_back(
-                surface_of(nodes, low - rim.front() > even_m ? low : rim.front()));
+            found.push_back(surface_of(nodes, low - rim.front() > even_m ? low : rim.front()));
             ++lakes;
             nodes_all += nodes.size();
         }
@@ -203,7 +201,8 @@ void ramps(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
                     higher += z[m] > level + even_m;
                 });
             }
-            if (off == 0 && 4 * lower <= lower + higher && (beside_flat(nodes) || shore(nodes, level)))
+            if (off == 0 && 4 * lower <= lower + higher &&
+                (beside_flat(nodes) || shore(nodes, level)))
                 found.push_back(surface_of(nodes, level));
         }
     clear(marks, mark::seen);
@@ -218,8 +217,8 @@ void ramps(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
                     for (int dr = -2; dr <= 2; ++dr)
                         for (int dc = -2; dc <= 2; ++dc) {
                             const Node m{n.col + dc, n.row + dr};
-                            beside |= z.contains(m) && (marks[m] & mark::flat) &&
-                                      z[m] == flat.level_m;
+                            beside |=
+                                z.contains(m) && (marks[m] & mark::flat) && z[m] == flat.level_m;
                         }
                 });
                 if (beside) {
@@ -263,9 +262,8 @@ std::vector<FlatSurface> complete_surfaces(Grid<float>& z, Marks& marks,
         each_node(surface, [&](Node n) { marks[n] |= mark::flat; });
     void_water(z, marks, surfaces, notes);
     ramps(z, marks, surfaces, notes);
-    std::stable_sort(
-        surfaces.begin(), surfaces.end(),
-        [](const FlatSurface& a, const FlatSurface& b) { return a.nodes > b.nodes; });
+    std::stable_sort(surfaces.begin(), surfaces.end(),
+                     [](const FlatSurface& a, const FlatSurface& b) { return a.nodes > b.nodes; });
     return surfaces;
 }
 
@@ -281,9 +279,9 @@ FoundLake fill_surface(const LakeSearch& s, const FlatSurface& surface, int id) 
     lake.sea = surface.touches_edge && std::abs(level) <= 2.0f;
     // Water that leaves the data without rising found a hole in a dam or an outlet, or the edge
     // cuts the lake.
-    const auto closed = lake.sea ? std::nullopt
-                                 : fill_closed(s.elevation_m, s.marks, level, surface.middle, id,
-                                               s.lake_of);
+    const auto closed =
+        lake.sea ? std::nullopt
+                 : fill_closed(s.elevation_m, s.marks, level, surface.middle, id, s.lake_of);
     const bool runs_out = !lake.sea && !closed;
     Filled filled;
     if (closed)

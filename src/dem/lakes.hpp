@@ -49,8 +49,7 @@ std::vector<FoundLake> find_lakes(const LakeSearch& search,
                                   const std::vector<FlatSurface>& surfaces, int first_id);
 
 /// Adds further surfaces of a lake's own level that lie within a few nodes of it.
-void join_bays(const LakeSearch& search, const std::vector<FlatSurface>& surfaces,
-               FoundLake& lake);
+void join_bays(const LakeSearch& search, const std::vector<FlatSurface>& surfaces, FoundLake& lake);
 
 /// Is the exact height `level_m` that of a flat surface?
 bool has_surface(const std::vector<FlatSurface>& surfaces, double level_m);

@@ -74,7 +74,7 @@ bool in_phase(const Source& a, const Source& b) {
         return false;
     const double* p = a.transform.v;
     const double* q = b.transform.v;
-    const double span = std::max(a.cols, b.cols) + std::max(a.rows, b.rows);
+    const double span = double(std::max(a.cols, b.cols)) + double(std::max(a.rows, b.rows));
     if (std::abs(p[1] - q[1]) * span > 0.01 * p[1] || std::abs(p[5] - q[5]) * span > -0.01 * p[5])
         return false;
     const double dx = (q[0] - p[0]) / p[1], dy = (q[3] - p[3]) / p[5];
@@ -153,7 +153,7 @@ Grid<float> warp(const std::vector<GDALDataset*>& inputs, const Target& target,
     onto->SetSpatialRef(&crs);
     // No nodata is declared for the target: it begins as NaN and stays so where nothing is written,
     // and GDAL keeps to its quick kernels if the sources have no voids either.
-    Arguments arguments{"-r", resampling, "-et", "0.02", "-wo", "NUM_THREADS=ALL_CPUS",
+    Arguments arguments{"-r",           resampling, "-et", "0.02", "-wo", "NUM_THREADS=ALL_CPUS",
                         "-novshiftgrid"};
     GDALWarpAppOptions* options = GDALWarpAppOptionsNew(arguments.get(), nullptr);
     GdalProgress watcher(progress, what, from, to);
@@ -304,8 +304,8 @@ FlatRows find_source_flats(GDALDataset& ds, int c0, int r0, int c1, int r1, bool
             sum += z * 0.0f;
         voids |= std::isnan(sum);
         for (int r = 0; r < part.size.rows; ++r)
-            finder.add_row(std::span(part.values)
-                               .subspan(part.index({0, r}), std::size_t(part.size.cols)));
+            finder.add_row(
+                std::span(part.values).subspan(part.index({0, r}), std::size_t(part.size.cols)));
     }
     return {finder.finish(), c0, r0, r1 - r0};
 }
@@ -470,8 +470,8 @@ private:
             return;
         // Which coarse squares of the source hold water?
         constexpr int coarse = 32;
-        Grid<unsigned char> water({source_.GetRasterXSize() / coarse + 1,
-                                   source_.GetRasterYSize() / coarse + 1});
+        Grid<unsigned char> water(
+            {source_.GetRasterXSize() / coarse + 1, source_.GetRasterYSize() / coarse + 1});
         for (const FlatSurface& flat : flats())
             for (const Run& run : flat.runs)
                 for (int c = (flats_.first_col() + run.first) / coarse;
@@ -606,9 +606,10 @@ void keep_areas(FlatLayer& layer, const Target& target) {
 }
 
 /// Finds the water surfaces of all sources, and whether these have voids.
-std::vector<std::unique_ptr<FlatLayer>> find_layers(
-    const Target& target, const std::vector<GDALDataset*>& inputs,
-    const std::vector<const OGRSpatialReference*>& crs, bool& voids, const Progress& progress) {
+std::vector<std::unique_ptr<FlatLayer>>
+find_layers(const Target& target, const std::vector<GDALDataset*>& inputs,
+            const std::vector<const OGRSpatialReference*>& crs, bool& voids,
+            const Progress& progress) {
     std::vector<std::unique_ptr<FlatLayer>> layers;
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         progress.report(0.02 + 0.13 * double(i) / double(inputs.size()), "finding flat water");
@@ -646,8 +647,8 @@ void keep_flats(Grid<float>& z, const Target& target,
             for (std::size_t k = 0; k < layers.size(); ++k) { // the last that covers a place counts
                 FlatLayer& layer = *layers[k];
                 const bool near = layer.near(bc, br);
-                if (!near && std::all_of(surface.begin(), surface.end(),
-                                         [](int s) { return s < 0; }))
+                if (!near &&
+                    std::all_of(surface.begin(), surface.end(), [](int s) { return s < 0; }))
                     continue;
                 layer.map().row(first.row, first.col, count, places);
                 for (std::size_t i = 0; i < std::size_t(count); ++i) {
@@ -683,8 +684,7 @@ void keep_flats(Grid<float>& z, const Target& target,
             if (std::isnan(linear))
                 continue;
             if (linear >= level - puddle_m)
-                z[n] = std::max(linear,
-                                std::nextafter(level, std::numeric_limits<float>::max()));
+                z[n] = std::max(linear, std::nextafter(level, std::numeric_limits<float>::max()));
             return;
         }
     };
@@ -712,8 +712,8 @@ void keep_flats(Grid<float>& z, const Target& target,
     });
 }
 
-/// The box of all sources [deg]. Tiles on both sides of the 180th meridian are brought side by side:
-/// those west of it count on beyond 180 degrees.
+/// The box of all sources [deg]. Tiles on both sides of the 180th meridian are brought side by
+/// side: those west of it count on beyond 180 degrees.
 Extent join_over_the_date_line(std::vector<Source>& sources) {
     const auto box_of = [](const Source& source) {
         auto to = between(source.crs, wgs84());
@@ -751,7 +751,7 @@ Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
                     "one scene serves one lake's surroundings: cut it with --at and --radius");
     std::optional<Bounds> bounds = options.bounds;
     if (bounds) { // a place may be counted from either side of the 180th meridian
-        const double turn = bounds->east_deg < all.west ? 360.0
+        const double turn = bounds->east_deg < all.west   ? 360.0
                             : bounds->west_deg > all.east ? -360.0
                                                           : 0.0;
         bounds->west_deg += turn;

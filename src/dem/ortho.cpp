@@ -76,7 +76,8 @@ Ortho warp_ortho(Source& source, const geo::Frame& frame, const Heightfield& gro
             scale.add("-b");
             scale.add(b <= colours ? text(b) : "mask");
             scale.add(text("-scale_", b));
-            for (const double v : {b <= colours ? low : 0.0, b <= colours ? high : 255.0, 0.0, 255.0})
+            for (const double v :
+                 {b <= colours ? low : 0.0, b <= colours ? high : 255.0, 0.0, 255.0})
                 scale.add(text(v));
         }
         view = translate(*input, scale, source.name);

@@ -38,8 +38,8 @@ const std::vector<RemoteSource>& known_sources() {
 }
 
 std::string tile_url(const RemoteSource& source, int south_deg, int west_deg) {
-    const int lat = source.named_by_north ? south_deg + int(std::lround(source.tile_deg))
-                                          : south_deg;
+    const int lat =
+        source.named_by_north ? south_deg + int(std::lround(source.tile_deg)) : south_deg;
     const auto digits = [](int value, int width) {
         std::string out = std::to_string(std::abs(value));
         return std::string(std::size_t(std::max(0, width - int(out.size()))), '0') + out;
@@ -201,8 +201,8 @@ private:
         tile.GetRasterBand(1)->GetBlockSize(&width, &height);
         constexpr double margin = 4.0; // pixels: what interpolation looks at
         const double shift = bounds.west_deg > g[0] + g[1] * tile.GetRasterXSize() ? 360.0
-                             : bounds.east_deg < g[0]                             ? -360.0
-                                                                                  : 0.0;
+                             : bounds.east_deg < g[0]                              ? -360.0
+                                                                                   : 0.0;
         const auto first = [&](double pixel, int size) {
             return std::max(0, int(std::floor((pixel - margin) / size)));
         };
@@ -262,8 +262,8 @@ private:
         int declared = 0;
         double nodata = band.GetNoDataValue(&declared);
         if (!declared)
-            nodata = GDALDataTypeIsFloating(type) ? std::numeric_limits<double>::quiet_NaN()
-                                                  : -32768.0;
+            nodata =
+                GDALDataTypeIsFloating(type) ? std::numeric_limits<double>::quiet_NaN() : -32768.0;
         out->GetRasterBand(1)->SetNoDataValue(nodata); // blocks that are not there read as this
         out->GetRasterBand(1)->SetUnitType(band.GetUnitType());
         if (band.GetScale() != 1.0 || band.GetOffset() != 0.0) {

@@ -27,9 +27,9 @@ std::string lower(std::string word) {
 int find_field(OGRFeatureDefn& layout, const std::string& asked) {
     if (!asked.empty())
         return layout.GetFieldIndex(asked.c_str());
-    static const char* names[] = {"depth", "depth_m",   "z",    "elevation", "elev", "height",
-                                  "level", "elev_m", "sounding", "contour", "valdco", "tiefe",
-                                  "profondeur"};
+    static const char* names[] = {"depth",  "depth_m", "z",         "elevation", "elev",
+                                  "height", "level",   "elev_m",    "sounding",  "contour",
+                                  "valdco", "tiefe",   "profondeur"};
     for (const char* name : names)
         for (int i = 0; i < layout.GetFieldCount(); ++i)
             if (lower(layout.GetFieldDefn(i)->GetNameRef()) == name)
@@ -119,8 +119,8 @@ SoundingFile read_soundings(const std::filesystem::path& path, const std::string
                              "X_POSSIBLE_NAMES=lon,long,longitude,x,lon_deg,easting,e,lng,laenge",
                              "Y_POSSIBLE_NAMES=lat,latitude,y,lat_deg,northing,n,breite",
                              "KEEP_GEOM_COLUMNS=YES", nullptr};
-    Dataset ds(GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr,
-                                 options));
+    Dataset ds(
+        GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, options));
     if (!ds || ds->GetLayerCount() < 1)
         throw Error(name + ": holds no points or lines that GDAL can read (" + messages.last() +
                         ")",

@@ -294,10 +294,10 @@ void to_metres(Source& source, const SourceOptions& options) {
         const Dataset plain = view_heights(ds, source.band, rule, source.findings);
         if (const std::size_t zeros = collar_nodes(*plain, source.name)) {
             rule.void_values.push_back(-rule.offset / rule.scale);
-            source.notes.push_back(
-                text(source.name, ": ", zeros, " nodes of exactly 0 reach the raster's edge and "
-                                               "nothing else lies within 3 m of 0: taken as no "
-                                               "data (--nodata none keeps them)"));
+            source.notes.push_back(text(source.name, ": ", zeros,
+                                        " nodes of exactly 0 reach the raster's edge and "
+                                        "nothing else lies within 3 m of 0: taken as no "
+                                        "data (--nodata none keeps them)"));
         }
     }
     if (rule.scale != 1.0 || rule.offset != 0.0)

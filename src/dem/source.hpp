@@ -23,8 +23,8 @@ struct Source {
     GeoTransform transform;
     int cols = 0, rows = 0;
     ImportInput input;
-    bool unit_declared = true;      ///< the file says in which unit its heights are
-    std::vector<std::string> notes; ///< what was assumed while opening
+    bool unit_declared = true;                ///< the file says in which unit its heights are
+    std::vector<std::string> notes;           ///< what was assumed while opening
     std::shared_ptr<HeightFindings> findings; ///< what reading has met so far
     Source();
     Source(Source&&) noexcept;

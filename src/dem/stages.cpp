@@ -110,8 +110,7 @@ int count_pools(LakeOf& lake, const Box& box) {
 
 StageTable stage_table(const Grid<float>& z, const Heightfield& ground, const Heightfield& water,
                        const geo::Frame& frame, const LakeRecord& lake,
-                       std::span<const double> levels_m, int neighbours,
-                       const Progress& progress) {
+                       std::span<const double> levels_m, int neighbours, const Progress& progress) {
     if (levels_m.empty() || levels_m.size() > 10'000)
         throw Error(text("got ", levels_m.size(), " levels, must be 1 to 10000"),
                     "choose a larger step");
@@ -141,10 +140,10 @@ StageTable stage_table(const Grid<float>& z, const Heightfield& ground, const He
                 solid.values[i] = never;
             }
         if (const auto spill = find_spill(solid, marks, mask, 1, lake.level_m))
-            out.spill = LakeSpill{
-                .level_m = spill->level_m,
-                .pass = geo::to_geo(frame, {ground.x_m(spill->pass.col), ground.y_m(spill->pass.row)}),
-                .at_surface = spill->at_surface};
+            out.spill = LakeSpill{.level_m = spill->level_m,
+                                  .pass = geo::to_geo(frame, {ground.x_m(spill->pass.col),
+                                                              ground.y_m(spill->pass.row)}),
+                                  .at_surface = spill->at_surface};
     }
 
     // Each node belongs to the first level that wets it; sums over levels follow from these.
@@ -177,9 +176,9 @@ StageTable stage_table(const Grid<float>& z, const Heightfield& ground, const He
                     if (wets[n] == never || first == wet_to.end())
                         continue;
                     if (area_scale == 0.0) {
-                        const double k = geo::scale_factor(
-                            frame, {ground.x_m(c0 + 0.5 * (block - 1)),
-                                    ground.y_m(r0 + 0.5 * (block - 1))});
+                        const double k =
+                            geo::scale_factor(frame, {ground.x_m(c0 + 0.5 * (block - 1)),
+                                                      ground.y_m(r0 + 0.5 * (block - 1))});
                         area_scale = 1.0 / (k * k);
                     }
                     Class& c = classes[std::size_t(first - wet_to.begin())];
@@ -190,8 +189,8 @@ StageTable stage_table(const Grid<float>& z, const Heightfield& ground, const He
                     c.lowest = std::min(c.lowest, z[n]);
                     c.low = {std::min(c.low.col, col), std::min(c.low.row, row)};
                     c.high = {std::max(c.high.col, col), std::max(c.high.row, row)};
-                    bool edge = col == 0 || row == 0 || col + 1 == z.size.cols ||
-                                row + 1 == z.size.rows;
+                    bool edge =
+                        col == 0 || row == 0 || col + 1 == z.size.cols || row + 1 == z.size.rows;
                     each_neighbour(z.size, n, [&](Node m) { edge |= std::isnan(z[m]); });
                     c.edge |= edge;
                 }

@@ -39,7 +39,6 @@ struct StageTable {
 /// @throws tarn::Cancelled
 StageTable stage_table(const Grid<float>& heights_m, const Heightfield& ground,
                        const Heightfield& water, const geo::Frame& frame, const LakeRecord& lake,
-                       std::span<const double> levels_m, int neighbours,
-                       const Progress& progress);
+                       std::span<const double> levels_m, int neighbours, const Progress& progress);
 
 } // namespace tarn::dem

@@ -31,9 +31,9 @@ Node innermost(const LakeOf& lakes, int id, Node low, Node high) {
     for (int row = size.rows - 1; row >= 0; --row)
         for (int col = size.cols - 1; col >= 0; --col)
             if (wet(col, row)) {
-                const int d = std::min(at(col, row),
-                                       1 + std::min({at(col + 1, row + 1), at(col, row + 1),
-                                                     at(col - 1, row + 1), at(col + 1, row)}));
+                const int d =
+                    std::min(at(col, row), 1 + std::min({at(col + 1, row + 1), at(col, row + 1),
+                                                         at(col - 1, row + 1), at(col + 1, row)}));
                 store(col, row, d);
                 if (d > greatest) {
                     greatest = d;
@@ -62,8 +62,8 @@ double shoreline_length_m(double level_m, const Surface& ground, const LakeOf& l
     const auto [low, high] = box;
     double length = 0.0;
     const double s = ground.spacing_m;
-    for (int row = std::max(low.row - 1, 0); row < std::min(high.row + 1, ground.elevation_m.size.rows - 1);
-         ++row)
+    for (int row = std::max(low.row - 1, 0);
+         row < std::min(high.row + 1, ground.elevation_m.size.rows - 1); ++row)
         for (int col = std::max(low.col - 1, 0);
              col < std::min(high.col + 1, ground.elevation_m.size.cols - 1); ++col) {
             // Corners clockwise from the north-west.

@@ -65,8 +65,8 @@ void interpolate_marked(Grid<float>& z, const Marks& marks, int reach) {
                 continue;
             const int halo = reach + 2;
             const int wr = std::max(r0 - halo, 0), wc = std::max(c0 - halo, 0);
-            Grid<float> part({std::min(c1 + halo, z.size.cols) - wc,
-                              std::min(r1 + halo, z.size.rows) - wr});
+            Grid<float> part(
+                {std::min(c1 + halo, z.size.cols) - wc, std::min(r1 + halo, z.size.rows) - wr});
             for (int row = 0; row < part.size.rows; ++row)
                 for (int col = 0; col < part.size.cols; ++col)
                     part[{col, row}] = marks[{wc + col, wr + row}] & no_data

@@ -84,9 +84,8 @@ void write_heights(const std::filesystem::path& path, const Grid<float>& z,
     band.SetDescription("heights");
     band.SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
     const CPLErr written =
-        band.RasterIO(GF_Write, 0, 0, z.size.cols, z.size.rows,
-                      const_cast<float*>(z.values.data()), z.size.cols, z.size.rows, GDT_Float32,
-                      0, 0);
+        band.RasterIO(GF_Write, 0, 0, z.size.cols, z.size.rows, const_cast<float*>(z.values.data()),
+                      z.size.cols, z.size.rows, GDT_Float32, 0, 0);
     finish(std::move(out), path, written, messages);
 }
 

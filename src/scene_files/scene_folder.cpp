@@ -54,8 +54,8 @@ std::string reason_to_keep(const fs::path& target) {
         return "exists and is not a scene folder";
     for (const auto& entry : fs::directory_iterator(target, failed)) {
         const std::string name = entry.path().filename().string();
-        static const char* ours[] = {"scene.json", "ground.tif", "water.tif",
-                                     "heights.tif", "ortho.tif", "preview.png"};
+        static const char* ours[] = {"scene.json",  "ground.tif", "water.tif",
+                                     "heights.tif", "ortho.tif",  "preview.png"};
         if (std::find(std::begin(ours), std::end(ours), name) == std::end(ours))
             return "holds '" + name + "', which is not tarn's";
     }

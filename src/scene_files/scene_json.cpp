@@ -151,10 +151,10 @@ LakeRecord read_lake(const Field& f, GridSize size) {
     lake.open_at_edge = f["open_at_edge"].boolean();
     if (f.has("spill")) {
         const Field spill = f["spill"];
-        lake.spill = LakeSpill{.level_m = spill["level_m"].number(-12'000, 12'000),
-                               .pass = {spill["lat_deg"].number(-90, 90),
-                                        spill["lon_deg"].number(-540, 540)},
-                               .at_surface = spill["at_surface"].boolean()};
+        lake.spill = LakeSpill{
+            .level_m = spill["level_m"].number(-12'000, 12'000),
+            .pass = {spill["lat_deg"].number(-90, 90), spill["lon_deg"].number(-540, 540)},
+            .at_surface = spill["at_surface"].boolean()};
     }
     lake.flat_share = f["flat_share"].number(0, 1);
     lake.position = {f["lat_deg"].number(-90, 90), f["lon_deg"].number(-540, 540)};
@@ -267,9 +267,7 @@ std::string detection_json(const std::vector<LakeRecord>& lakes, const ImportRep
 
 std::string stages_json(const LakeRecord& lake, const std::optional<LakeSpill>& spill,
                         const std::vector<StageRow>& rows) {
-    json out = {{"lake", lake_json(lake)},
-                {"spill", spill_json(spill)},
-                {"stages", json::array()}};
+    json out = {{"lake", lake_json(lake)}, {"spill", spill_json(spill)}, {"stages", json::array()}};
     for (const StageRow& r : rows)
         out["stages"].push_back({{"level_m", r.level_m},
                                  {"area_m2", r.area_m2},

@@ -52,8 +52,8 @@ void make_tile(const fs::path& path, int col, int row, int side) {
     options.SetNameValue("TILED", "YES");
     tarn::dem::Dataset out(
         driver->Create(path.c_str(), side, side, 1, GDT_Float32, options.List()));
-    double transform[6] = {west_deg + col * side * step_deg, step_deg, 0.0,
-                           north_deg - row * side * step_deg, 0.0, -step_deg};
+    double transform[6] = {west_deg + col * side * step_deg,  step_deg, 0.0,
+                           north_deg - row * side * step_deg, 0.0,      -step_deg};
     OGRSpatialReference crs;
     crs.SetFromUserInput("EPSG:4326");
     if (!out || out->SetGeoTransform(transform) != CE_None || out->SetSpatialRef(&crs) != CE_None ||
@@ -104,8 +104,8 @@ int bench(int argc, char** argv) {
     const int side = std::stoi(option(argc, argv, "--side", "20000"));
     const int region = std::stoi(option(argc, argv, "--region", "10000"));
     const int repeats = std::stoi(option(argc, argv, "--repeats", "3"));
-    const bool json = std::any_of(argv, argv + argc,
-                                  [](const char* a) { return std::strcmp(a, "--json") == 0; });
+    const bool json =
+        std::any_of(argv, argv + argc, [](const char* a) { return std::strcmp(a, "--json") == 0; });
     if (folder.empty())
         throw tarn::Error("no --folder given", "name one with room for the mosaic");
     fs::create_directories(folder);
@@ -147,8 +147,8 @@ int bench(int argc, char** argv) {
         rows = made->GetRasterYSize();
         char* wkt = nullptr;
         made->GetSpatialRef()->exportToWkt(&wkt);
-        std::vector<std::string> warp = {"gdalwarp", "-q", "-overwrite", "-r", "cubic", "-ot",
-                                         "Float32", "-t_srs", wkt, "-te"};
+        std::vector<std::string> warp = {"gdalwarp", "-q",      "-overwrite", "-r", "cubic",
+                                         "-ot",      "Float32", "-t_srs",     wkt,  "-te"};
         CPLFree(wkt);
         for (const double v : {g[0], g[3] + rows * g[5], g[0] + cols * g[1], g[3]})
             warp.push_back(text(v));
@@ -172,22 +172,22 @@ int bench(int argc, char** argv) {
     const double m = median(ours, &Run::peak_mb), wm = median(theirs, &Run::peak_mb);
     if (json)
         std::cout << text("{\"cols\": ", cols, ", \"rows\": ", rows, ", \"mosaic_side\": ", side,
-                          ", \"import_s\": ", t, ", \"gdalwarp_s\": ", w, ", \"time_ratio\": ",
-                          t / w, ", \"import_peak_mb\": ", m, ", \"gdalwarp_peak_mb\": ", wm,
-                          ", \"ground_and_water_mb\": ", pair_mb, ", \"rasters_mb\": ", all_mb,
-                          ", \"memory_ratio\": ", m / all_mb, ", \"memory_ratio_16_bit\": ",
-                          m / pair_mb, ", \"cores\": ", std::thread::hardware_concurrency(), "}\n");
+                          ", \"import_s\": ", t, ", \"gdalwarp_s\": ", w,
+                          ", \"time_ratio\": ", t / w, ", \"import_peak_mb\": ", m,
+                          ", \"gdalwarp_peak_mb\": ", wm, ", \"ground_and_water_mb\": ", pair_mb,
+                          ", \"rasters_mb\": ", all_mb, ", \"memory_ratio\": ", m / all_mb,
+                          ", \"memory_ratio_16_bit\": ", m / pair_mb,
+                          ", \"cores\": ", std::thread::hardware_concurrency(), "}\n");
     else
-        std::cout << text("mosaic ", side, " x ", side, " float (", tiles.size(), " tiles) -> ",
-                          cols, " x ", rows, " nodes, ", std::thread::hardware_concurrency(),
-                          " cores, median of ", repeats, "\n",
-                          "                      time [s]   peak memory [MB]\n",
-                          "  gdalwarp            ", fixed(w, 1), "       ", fixed(wm, 0), "\n",
-                          "  tarn import         ", fixed(t, 1), "       ", fixed(m, 0), "\n",
-                          "  ratio               ", fixed(t / w, 2), "\n",
-                          "  peak / (ground + water + heights, ", fixed(all_mb, 0), " MB)   ",
-                          fixed(m / all_mb, 2), "\n", "  peak / (ground + water, ",
-                          fixed(pair_mb, 0), " MB)             ", fixed(m / pair_mb, 2), "\n");
+        std::cout << text(
+            "mosaic ", side, " x ", side, " float (", tiles.size(), " tiles) -> ", cols, " x ",
+            rows, " nodes, ", std::thread::hardware_concurrency(), " cores, median of ", repeats,
+            "\n", "                      time [s]   peak memory [MB]\n", "  gdalwarp            ",
+            fixed(w, 1), "       ", fixed(wm, 0), "\n", "  tarn import         ", fixed(t, 1),
+            "       ", fixed(m, 0), "\n", "  ratio               ", fixed(t / w, 2), "\n",
+            "  peak / (ground + water + heights, ", fixed(all_mb, 0), " MB)   ",
+            fixed(m / all_mb, 2), "\n", "  peak / (ground + water, ", fixed(pair_mb, 0),
+            " MB)             ", fixed(m / pair_mb, 2), "\n");
     return 0;
 }
 

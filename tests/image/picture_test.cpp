@@ -180,7 +180,8 @@ TEST(Shoreline, IsTheExactCurveToATenthOfACell) {
                     if ((a < 0) == (b < 0))
                         continue;
                     const Node wet = a < 0 ? here : other, dry = a < 0 ? other : here;
-                    edges.push_back({wet, dry, level, std::min(a, b) / (std::min(a, b) - std::max(a, b))});
+                    edges.push_back(
+                        {wet, dry, level, std::min(a, b) / (std::min(a, b) - std::max(a, b))});
                 }
         ASSERT_GT(edges.size(), 100u) << name;
         std::vector<double> low(edges.size(), 0.0), high(edges.size(), 1.0);
@@ -191,7 +192,8 @@ TEST(Shoreline, IsTheExactCurveToATenthOfACell) {
                 const double col = edges[i].wet.col + f * (edges[i].dry.col - edges[i].wet.col);
                 const double row = edges[i].wet.row + f * (edges[i].dry.row - edges[i].wet.row);
                 rays.push_back(
-                    {{scene.ground.x_m(col), scene.ground.y_m(row), edges[i].level + 500}, {0, 0, -1}});
+                    {{scene.ground.x_m(col), scene.ground.y_m(row), edges[i].level + 500},
+                     {0, 0, -1}});
             }
             const auto hits = test_support::trace_on_gpu(scene, rays, true);
             for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -256,6 +258,6 @@ TEST(Shoreline, NoWaterOutsideTheLake) {
     double counted = 0.0;
     for (const LakeRecord& lake : scene.lakes)
         counted += lake.area_m2;
-    EXPECT_GT(scene.lakes.size(), 2u); // three lakes at three levels
+    EXPECT_GT(scene.lakes.size(), 2u);          // three lakes at three levels
     EXPECT_NEAR(area, counted, 0.02 * counted); // drawn = counted
 }

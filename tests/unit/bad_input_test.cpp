@@ -118,8 +118,8 @@ struct Report {
         add(what, clean(said));
     }
     /// The import must work and its report hold `words`.
-    void taken(const std::string& what, const dem::ImportOptions& options,
-               const std::string& words, double area_m2 = 0.0) {
+    void taken(const std::string& what, const dem::ImportOptions& options, const std::string& words,
+               double area_m2 = 0.0) {
         std::string notes;
         try {
             const auto result = dem::import_dem(options, {});
@@ -169,15 +169,17 @@ TEST(BadInput, EachGetsOneClearLineOrIsTakenOnRecord) {
     report.refused("ten bytes of a GeoTIFF", with("head.tif"), "GDAL cannot read it");
     std::string lying = bytes;
     for (std::size_t i = 8; i + 12 < 200; ++i) // the TIFF tag ImageWidth (256): a lie of 2^30
-        if (static_cast<unsigned char>(lying[i]) == 0 && static_cast<unsigned char>(lying[i + 1]) == 1 &&
-            lying[i + 2] == 3 && lying[i + 3] == 0) {
+        if (static_cast<unsigned char>(lying[i]) == 0 &&
+            static_cast<unsigned char>(lying[i + 1]) == 1 && lying[i + 2] == 3 &&
+            lying[i + 3] == 0) {
             lying[i + 2] = 4;
             lying[i + 8] = lying[i + 9] = lying[i + 10] = 0;
             lying[i + 11] = 0x40;
             break;
         }
     put(at("lying.tif"), lying);
-    report.refused("a GeoTIFF whose header claims 2^30 columns", with("lying.tif"), "nodes, more than 16384");
+    report.refused("a GeoTIFF whose header claims 2^30 columns", with("lying.tif"),
+                   "nodes, more than 16384");
     put(at("gone.vrt"), "<VRTDataset rasterXSize=\"20\" rasterYSize=\"20\"><SRS>EPSG:32633</SRS>"
                         "<GeoTransform>500000,10,0,5300000,0,-10</GeoTransform>"
                         "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource>"
@@ -211,7 +213,8 @@ TEST(BadInput, EachGetsOneClearLineOrIsTakenOnRecord) {
         return o;
     };
     put(at("short.asc"), asc(asc_header, 37));
-    report.refused("an .asc with fewer values than its header says", ascii("short.asc"), "short.asc");
+    report.refused("an .asc with fewer values than its header says", ascii("short.asc"),
+                   "short.asc");
     put(at("zero.asc"), asc("ncols 10\nnrows 10\nxllcorner 0\nyllcorner 0\ncellsize 0\n", 100));
     report.refused("an .asc with cells of no size", ascii("zero.asc"), "zero.asc");
     put(at("minus.asc"), asc("ncols -10\nnrows 10\nxllcorner 0\nyllcorner 0\ncellsize 1\n", 100));
@@ -312,7 +315,8 @@ TEST(BadInput, EachGetsOneClearLineOrIsTakenOnRecord) {
     make(at("bands.tif"), {.bands = 2});
     report.taken("two bands", with("bands.tif"), "the first is taken", lake);
     make(at("plate.tif"), {}, [](int, int) { return 5.0; });
-    report.taken("a DEM that is flat all over", with("plate.tif", std::nullopt), "touches the edge");
+    report.taken("a DEM that is flat all over", with("plate.tif", std::nullopt),
+                 "touches the edge");
 
     // --- several tiles ---------------------------------------------------------------------------
     auto twice = with("good.tif");
@@ -336,7 +340,8 @@ TEST(BadInput, EachGetsOneClearLineOrIsTakenOnRecord) {
     auto q = with("good.tif");
     q.dems.clear();
     report.refused("no DEM", q, "no elevation data given");
-    report.refused("--level below all ground", with("good.tif", -5.0), "nothing lies below the level");
+    report.refused("--level below all ground", with("good.tif", -5.0),
+                   "nothing lies below the level");
     report.refused("--level nan", with("good.tif", std::nan("")), "--level");
     report.refused("--level 99999", with("good.tif", 99'999.0), "--level is 99999");
     report.taken("--level above all ground", with("good.tif", 500.0), "it may rise to 45.00 m");

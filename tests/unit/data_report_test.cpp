@@ -21,8 +21,8 @@ struct Named {
     const char* name;
     GeoPoint at; ///< a place in it or at its shore
     double level_m;
-    double area_km2;   ///< 0: none is given
-    double percent;    ///< allowed difference; what the source's own cells leave open
+    double area_km2; ///< 0: none is given
+    double percent;  ///< allowed difference; what the source's own cells leave open
 };
 
 struct DataSet {
@@ -137,8 +137,8 @@ TEST(DataReport, EveryNamedLakeIsFoundWithItsLevelAndArea) {
             ASSERT_GE(best, 0) << set.name << ": " << lake.name << " was not found";
             taken[std::size_t(best)] = true;
             const LakeRecord& l = found.lakes[std::size_t(best)];
-            table << "| " << set.name << " | " << lake.name << " | " << fixed(l.level_m, 2)
-                  << " | " << fixed(lake.level_m, 2) << " | " << fixed(l.area_m2 / 1e6, 3) << " | "
+            table << "| " << set.name << " | " << lake.name << " | " << fixed(l.level_m, 2) << " | "
+                  << fixed(lake.level_m, 2) << " | " << fixed(l.area_m2 / 1e6, 3) << " | "
                   << (lake.area_km2 > 0 ? fixed(lake.area_km2, 2) : std::string("–")) << " | "
                   << (lake.area_km2 > 0 ? percent(l.area_m2 / 1e6, lake.area_km2)
                                         : std::string("–"))
@@ -169,9 +169,8 @@ TEST(DataReport, NothingIsFoundWhereThereIsNoLakeSurface) {
     // A topobathy whose water has no surface in it, and river reaches under a size limit.
     EXPECT_TRUE(dem::detect_lakes({.dems = {data("pleasant_wi/pleasant_topobathy.tif")}}, {})
                     .lakes.empty());
-    EXPECT_TRUE(dem::detect_lakes({.dems = {data("osgb_asc/osgb_dsm_2m_tiles.zip")},
-                                   .crs = "EPSG:27700"},
-                                  {})
+    EXPECT_TRUE(dem::detect_lakes(
+                    {.dems = {data("osgb_asc/osgb_dsm_2m_tiles.zip")}, .crs = "EPSG:27700"}, {})
                     .lakes.empty());
     const auto ponds = dem::detect_lakes({.dems = {data("osgb_asc/osgb_dsm_2m_tiles.zip")},
                                           .min_area_km2 = 0.0005,
@@ -224,9 +223,9 @@ TEST(DataReport, StageTablesOfPleasantAndRotoma) {
         struct Row {
             double level, area_km2, volume_km3, depth;
         };
-        const Row rows[] = {{300, 8.526, 0.3100, 67.2}, {310, 9.999, 0.4016, 77.2},
+        const Row rows[] = {{300, 8.526, 0.3100, 67.2},     {310, 9.999, 0.4016, 77.2},
                             {313.31, 11.140, 0.4361, 80.5}, {315, 11.393, 0.4552, 82.2},
-                            {316, 11.872, 0.4674, 83.2}, {318, 12.264, 0.4916, 85.2}};
+                            {316, 11.872, 0.4674, 83.2},    {318, 12.264, 0.4916, 85.2}};
         const auto scene = dem::import_dem(
             {.dems = {data("rotoma/rotoma_topobathy_32m.tif")}, .level_m = 313.31}, {});
         std::vector<double> levels;
@@ -335,10 +334,8 @@ TEST(DataReport, BedsFromSoundingsAndDepths) {
         << differences.size() << " nodes: median difference " << fixed(median, 3)
         << " m, 90th percentile " << fixed(p90, 2) << " m. First wet node: median depth "
         << fixed(rim_median, 2) << " m, in the topobathy " << fixed(given_median, 2) << " m.\n";
-    const auto depths = dem::import_dem({.dems = {data("long_lake_ns/longlake_depth.tif")},
-                                         .level_m = 20.0,
-                                         .depths = true},
-                                        {});
+    const auto depths = dem::import_dem(
+        {.dems = {data("long_lake_ns/longlake_depth.tif")}, .level_m = 20.0, .depths = true}, {});
     EXPECT_EQ(depths.lakes[0].bed, Bed::measured);
     EXPECT_NEAR(depths.lakes[0].area_m2 / 1e6, 0.970, 0.02 * 0.970);
     EXPECT_NEAR(*depths.lakes[0].volume_m3 / 1e6, 0.931, 0.02 * 0.931);

@@ -48,8 +48,8 @@ LakeOf filled(const Grid<float>& z, float highest_wet_m, Node seed, Filled* out 
               double floor_m = -1e30, const Marks* marks = nullptr) {
     LakeOf lakes(z.size);
     const Marks plain(z.size);
-    const Filled result = fill_from(z, marks ? *marks : plain, highest_wet_m,
-                                    std::span(&seed, 1), 1, lakes, floor_m);
+    const Filled result =
+        fill_from(z, marks ? *marks : plain, highest_wet_m, std::span(&seed, 1), 1, lakes, floor_m);
     if (out)
         *out = result;
     return lakes;
@@ -134,8 +134,8 @@ TEST(Fill, ClosedFillingIsTheSameOrNothing) {
 }
 
 TEST(Fill, WaterSpillsOverTheLowestPassAndLeavesWhereItReachesTheEdge) {
-    const Grid<float> z = picture({"9999999999", "9911199999", "9911169999", "9911197429",
-                                   "9999999922", "9999999992"});
+    const Grid<float> z = picture(
+        {"9999999999", "9911199999", "9911169999", "9911197429", "9999999922", "9999999992"});
     Marks marks(z.size);
     const LakeOf lakes = filled(z, 3.0f, {3, 2});
     const auto spill = find_spill(z, marks, lakes, 1, 3.0);
@@ -278,7 +278,8 @@ TEST(Lakes, CentimetreRampsAndSeamsMakeOneLake) {
     LakeOf lakes(z.size);
     std::vector<std::string> notes;
     const auto surfaces = complete_surfaces(z, marks, find_flats(z), notes);
-    const auto found = find_lakes({.elevation_m = z, .marks = marks, .lake_of = lakes}, surfaces, 1);
+    const auto found =
+        find_lakes({.elevation_m = z, .marks = marks, .lake_of = lakes}, surfaces, 1);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].level_m, 100.0);
     // All of it but the seam's and the shore's own rows.
@@ -307,7 +308,8 @@ TEST(Lakes, ManyLevelsTerracesAndBaysAreTold) {
     LakeOf lakes(z.size);
     std::vector<std::string> notes;
     const auto surfaces = complete_surfaces(z, marks, find_flats(z), notes);
-    const auto found = find_lakes({.elevation_m = z, .marks = marks, .lake_of = lakes}, surfaces, 1);
+    const auto found =
+        find_lakes({.elevation_m = z, .marks = marks, .lake_of = lakes}, surfaces, 1);
     ASSERT_EQ(found.size(), 2u);
     EXPECT_EQ(found[0].level_m, 285.0);
     EXPECT_EQ(found[0].nodes, 600u);
@@ -570,14 +572,14 @@ TEST(Stages, OfTwoBasinsFollowTheirFormulas) {
     const Poured high = pour_lake(z, s, both, 39.0);
     record.level_m = 39.0;
     measure(record, surface_of(z, s), both, boxes_of(both, 1)[0], frame);
-    const auto low = stage_table(z, high.ground, high.water, frame, record, std::vector{20.0}, 8,
-                                 Progress{});
+    const auto low =
+        stage_table(z, high.ground, high.water, frame, record, std::vector{20.0}, 8, Progress{});
     EXPECT_EQ(low.stages[0].pools, 2);
     EXPECT_NEAR(*low.stages[0].volume_m3, volume(20) + volume(10), 0.01 * volume(20));
     record.bed = Bed::unknown;
-    EXPECT_THROW(stage_table(z, high.ground, high.water, frame, record, std::vector{20.0}, 8,
-                             Progress{}),
-                 Error);
+    EXPECT_THROW(
+        stage_table(z, high.ground, high.water, frame, record, std::vector{20.0}, 8, Progress{}),
+        Error);
 }
 
 namespace {
@@ -640,9 +642,9 @@ TEST(Bed, BathymetryIsReadAsDepthsOfEitherSignOrAsElevations) {
         previous = a[Node(k, 20)];
     }
     Grid<float> ground = z;
-    EXPECT_THROW(merge_bathymetry(ground, place, Grid<float>(place.size(), NAN),
-                                  BathymetryKind::depth),
-                 Error);
+    EXPECT_THROW(
+        merge_bathymetry(ground, place, Grid<float>(place.size(), NAN), BathymetryKind::depth),
+        Error);
 }
 
 TEST(Bed, SoundingsOfAPlaneGiveThatPlaneAndTheShoreHasNoDepth) {

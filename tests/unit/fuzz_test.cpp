@@ -27,7 +27,8 @@ int rounds() {
 std::string damaged(std::string bytes, std::mt19937& random) {
     const int changes = 1 + int(random() % 6u);
     for (int k = 0; k < changes && !bytes.empty(); ++k) {
-        const std::size_t reach = random() % 3u ? std::min<std::size_t>(bytes.size(), 600) : bytes.size();
+        const std::size_t reach =
+            random() % 3u ? std::min<std::size_t>(bytes.size(), 600) : bytes.size();
         const std::size_t at = random() % reach;
         switch (random() % 5u) {
         case 0:
@@ -52,7 +53,8 @@ std::string damaged(std::string bytes, std::mt19937& random) {
 }
 
 template <class Act>
-void survive(const std::string& original, const std::filesystem::path& path, unsigned seed, Act act) {
+void survive(const std::string& original, const std::filesystem::path& path, unsigned seed,
+             Act act) {
     std::mt19937 random(seed);
     int refused = 0, taken = 0;
     for (int i = 0; i < rounds(); ++i) {

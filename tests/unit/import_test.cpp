@@ -212,8 +212,8 @@ TEST(Import, TilesOnBothSidesOfTheDateLineAreJoined) {
         const double west = side == 0 ? 180.0 - 120 * step : -180.0;
         for (int r = 0; r < 120; ++r)
             for (int c = 0; c < 120; ++c) {
-                const ScenePoint p = geo::to_scene(
-                    local, {-17.0 + (59.5 - r) * step, west + (c + 0.5) * step});
+                const ScenePoint p =
+                    geo::to_scene(local, {-17.0 + (59.5 - r) * step, west + (c + 0.5) * step});
                 z[{c, r}] = float(std::max(50.0, 0.05 * std::hypot(p.x_m, p.y_m)));
             }
         write(folder / (side ? "w.tif" : "e.tif"), z, west, -17.0 + 60 * step, step, "EPSG:4326");
@@ -409,10 +409,10 @@ std::array<int, 4> draped(const Ortho& ortho, const geo::Frame& frame, double co
               r = int((ortho.north_m - y) / ortho.spacing_m);
     std::array<int, 4> out{};
     for (std::size_t k = 0; k < 4; ++k)
-        out[k] = ortho.picture.bytes[(std::size_t(r) * std::size_t(ortho.picture.width_px) +
-                                      std::size_t(c)) *
-                                         4 +
-                                     k];
+        out[k] =
+            ortho.picture
+                .bytes[(std::size_t(r) * std::size_t(ortho.picture.width_px) + std::size_t(c)) * 4 +
+                       k];
     return out;
 }
 
@@ -426,14 +426,16 @@ TEST(Import, PicturesOfAnyKindFallBackWhereTheyHaveNothing) {
             {.dems = {folder / "bowl.tif"}, .level_m = 10.0, .ortho = folder / name}, {});
     };
     // 8 bits, nodata 255 in the left half.
-    write_picture(folder / "byte.tif", 3, GDT_Byte,
-                  [](int b, int c, int) { return c < 30 ? 255.0 : 40.0 * b; }, 255.0);
+    write_picture(
+        folder / "byte.tif", 3, GDT_Byte,
+        [](int b, int c, int) { return c < 30 ? 255.0 : 40.0 * b; }, 255.0);
     auto result = drape("byte.tif");
     EXPECT_EQ(draped(*result.ortho, result.frame, 10, 20)[3], 0);
     EXPECT_EQ(draped(*result.ortho, result.frame, 50, 20), (std::array{40, 80, 120, 255}));
     // 16 bits, nodata 0 in the left half, values up to 4000: stretched by what is there.
-    write_picture(folder / "deep.tif", 3, GDT_UInt16,
-                  [](int b, int c, int r) { return c < 30 ? 0.0 : 1000.0 * b + 25.0 * r; }, 0.0);
+    write_picture(
+        folder / "deep.tif", 3, GDT_UInt16,
+        [](int b, int c, int r) { return c < 30 ? 0.0 : 1000.0 * b + 25.0 * r; }, 0.0);
     result = drape("deep.tif");
     EXPECT_EQ(draped(*result.ortho, result.frame, 10, 20)[3], 0);
     const auto low = draped(*result.ortho, result.frame, 50, 2),
@@ -446,14 +448,15 @@ TEST(Import, PicturesOfAnyKindFallBackWhereTheyHaveNothing) {
     const GDALColorEntry red{200, 10, 20, 255}, none{0, 0, 0, 0};
     palette.SetColorEntry(0, &none);
     palette.SetColorEntry(1, &red);
-    write_picture(folder / "palette.tif", 1, GDT_Byte,
-                  [](int, int c, int) { return c < 30 ? 0.0 : 1.0; }, 0.0, &palette);
+    write_picture(
+        folder / "palette.tif", 1, GDT_Byte, [](int, int c, int) { return c < 30 ? 0.0 : 1.0; },
+        0.0, &palette);
     result = drape("palette.tif");
     EXPECT_EQ(draped(*result.ortho, result.frame, 10, 20)[3], 0);
     EXPECT_EQ(draped(*result.ortho, result.frame, 50, 20), (std::array{200, 10, 20, 255}));
     // Grey with nodata.
-    write_picture(folder / "grey.tif", 1, GDT_Byte,
-                  [](int, int c, int) { return c < 30 ? 7.0 : 99.0; }, 7.0);
+    write_picture(
+        folder / "grey.tif", 1, GDT_Byte, [](int, int c, int) { return c < 30 ? 7.0 : 99.0; }, 7.0);
     result = drape("grey.tif");
     EXPECT_EQ(draped(*result.ortho, result.frame, 10, 20)[3], 0);
     EXPECT_EQ(draped(*result.ortho, result.frame, 50, 20), (std::array{99, 99, 99, 255}));

@@ -23,7 +23,8 @@ constexpr double step = 1.0 / 1200.0; // 3" tiles with a shared column, cloud-op
 /// A lake of some kilometres around 46.0 N 9.0 E, where four tiles meet.
 float height(double lat, double lon) {
     const double x = (lon - 9.0) * 78.0, y = (lat - 46.0) * 111.0, r = std::hypot(x, y); // km
-    return r < 3.0 ? 200.0f : float(200.0 + (40.0 + 15.0 * std::sin(9 * x) * std::sin(7 * y)) * (r - 3.0));
+    return r < 3.0 ? 200.0f
+                   : float(200.0 + (40.0 + 15.0 * std::sin(9 * x) * std::sin(7 * y)) * (r - 3.0));
 }
 
 void make_tile(const std::filesystem::path& root, int lat, int lon, const std::string& name) {
@@ -37,8 +38,8 @@ void make_tile(const std::filesystem::path& root, int lat, int lon, const std::s
     dem::Dataset in(GDALDataset::Open(plain.c_str(), GDAL_OF_RASTER));
     dem::Arguments words{"-of", "COG", "-co", "BLOCKSIZE=128", "-co", "COMPRESS=DEFLATE"};
     GDALTranslateOptions* options = GDALTranslateOptionsNew(words.get(), nullptr);
-    dem::Dataset out(GDALDataset::FromHandle(GDALTranslate(
-        (root / name).c_str(), GDALDataset::ToHandle(in.get()), options, nullptr)));
+    dem::Dataset out(GDALDataset::FromHandle(
+        GDALTranslate((root / name).c_str(), GDALDataset::ToHandle(in.get()), options, nullptr)));
     GDALTranslateOptionsFree(options);
     ASSERT_TRUE(out);
     std::filesystem::remove(plain);
@@ -81,11 +82,11 @@ const dem::Bounds around_lake{8.93, 45.95, 9.07, 46.05};
 TEST(Remote, UrlsFollowTheDocumentedLayouts) {
     const auto& known = dem::known_sources();
     ASSERT_EQ(known.at(0).name, "copernicus");
-    EXPECT_EQ(dem::tile_url(known[0], 43, 6),
-              "https://copernicus-dem-30m.s3.amazonaws.com/"
-              "Copernicus_DSM_COG_10_N43_00_E006_00_DEM/"
-              "Copernicus_DSM_COG_10_N43_00_E006_00_DEM.tif");
-    EXPECT_NE(dem::tile_url(known[0], -39, -177).find("_S39_00_W177_00_DEM.tif"), std::string::npos);
+    EXPECT_EQ(dem::tile_url(known[0], 43, 6), "https://copernicus-dem-30m.s3.amazonaws.com/"
+                                              "Copernicus_DSM_COG_10_N43_00_E006_00_DEM/"
+                                              "Copernicus_DSM_COG_10_N43_00_E006_00_DEM.tif");
+    EXPECT_NE(dem::tile_url(known[0], -39, -177).find("_S39_00_W177_00_DEM.tif"),
+              std::string::npos);
     // USGS names a tile by its north-western corner: n43w123 holds Crater Lake, 42..43 N.
     EXPECT_EQ(dem::tile_url(known.at(1), 42, -123),
               "https://prd-tnm.s3.amazonaws.com/StagedProducts/Elevation/13/TIFF/current/n43w123/"
