@@ -71,8 +71,10 @@ void add_dem_options(CLI::App& c, DemWords& words) {
     c.add_option("--cache", words.cache, "where fetched tiles are kept; default: the user's cache");
     c.add_option("--timeout", options.fetch.timeout_s, "seconds to wait for each answer")
         ->capture_default_str();
-    c.add_option("--nodata", words.nodata,
-                 "value that means no data, besides what the files declare; none: nothing does");
+    c.add_option(
+        "--nodata", words.nodata,
+        "value that means no data, besides what the files declare; none: no collar of 0 is "
+        "looked for");
 }
 
 void read_dem_words(DemWords& words) {

@@ -15,14 +15,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// For gnuplot, in single quotes: within double ones it would run what stands in backquotes.
 std::string quoted(const std::string& words) {
-    std::string out = "\"";
+    std::string out = "'";
     for (const char c : words)
-        if (c == '"' || c == '\\')
-            (out += '\\') += c;
+        if (c == '\'')
+            out += "''";
         else if (static_cast<unsigned char>(c) >= 32)
             out += c;
-    return out + "\"";
+    return out + "'";
 }
 
 /// Runs gnuplot on a script; its last words on stderr if it fails.

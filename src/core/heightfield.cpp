@@ -55,9 +55,10 @@ Heightfield quantise(std::span<const float> elevations_m, GridSize size, double 
     const double range_m = high - low;
     field.scale_m = range_m > 0.0 ? range_m / (65535.0 - 2.0 * spare_codes) : 1.0;
     field.offset_m = low - spare_codes * field.scale_m;
+    const double per_m = 1.0 / field.scale_m;
     for (std::size_t i = 0; i < elevations_m.size(); ++i)
-        field.codes.values[i] = static_cast<std::uint16_t>(
-            std::lround((double(elevations_m[i]) - field.offset_m) / field.scale_m));
+        field.codes.values[i] = static_cast<std::uint16_t>( // rounds: the quotient is >= 0
+            (double(elevations_m[i]) - field.offset_m) * per_m + 0.5);
     return field;
 }
 

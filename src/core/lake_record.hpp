@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tarn {
 
@@ -48,6 +49,7 @@ struct LakeRecord {
     double flat_share = 0.0; ///< part of its nodes that lie in a flat surface of the DEM, [0, 1]
     GeoPoint position;       ///< a wet node deep inside the lake
     Node seed;               ///< the node that position came from
+    std::vector<Node> parts; ///< a node of each part that it has: bays behind causeways
     Node west_north, east_south; ///< bounding box of its wet nodes, inclusive
 };
 

@@ -14,6 +14,8 @@ namespace {
 struct Step {
     float elevation_m;
     Node at;
+    float pass_m = 0.0f; ///< the highest ground on its way, and where that is
+    Node pass = {};
     bool operator<(const Step& other) const { return elevation_m > other.elevation_m; }
 };
 
@@ -196,17 +198,16 @@ std::optional<Spill> rise(const Grid<float>& z, Marks& marks, std::priority_queu
         rim.pop();
         if (double(step.elevation_m) > up_to_m)
             break;
-        if (step.elevation_m > static_cast<float>(spill.level_m)) {
-            spill.level_m = double(step.elevation_m);
-            spill.pass = step.at;
-            spill.at_surface = false;
-        }
         const Node at = step.at;
         bool edge =
             at.col == 0 || at.row == 0 || at.col + 1 == z.size.cols || at.row + 1 == z.size.rows;
         each_neighbour(z.size, at, [&](Node n) { edge |= (marks[n] & mark::outside) != 0; });
         if (edge) {
             spill.exit = at;
+            spill.pass = step.pass;
+            spill.at_surface = !(step.pass_m > static_cast<float>(spill.level_m));
+            if (!spill.at_surface)
+                spill.level_m = double(step.pass_m);
             out = spill;
             break;
         }
@@ -214,7 +215,10 @@ std::optional<Spill> rise(const Grid<float>& z, Marks& marks, std::priority_queu
             if (!(marks[n] & mark::seen)) {
                 marks[n] |= mark::seen;
                 touched.push_back(n);
-                rim.push({z[n], n});
+                if (z[n] > step.pass_m)
+                    rim.push({z[n], n, z[n], n});
+                else
+                    rim.push({z[n], n, step.pass_m, step.pass});
             }
         });
     }
@@ -237,10 +241,24 @@ std::optional<Spill> find_spill(const Grid<float>& z, Marks& marks, const LakeOf
                 continue;
             marks[at] |= mark::seen;
             touched.push_back(at);
-            bool shore = col == 0 || row == 0 || col + 1 == z.size.cols || row + 1 == z.size.rows;
-            each_neighbour(z.size, at, [&](Node n) { shore |= lake_of[n] != id; });
-            if (shore)
-                rim.push({std::min(z[at], static_cast<float>(level_m)), at});
+            bool edge = col == 0 || row == 0 || col + 1 == z.size.cols || row + 1 == z.size.rows;
+            each_neighbour(z.size, at, [&](Node n) {
+                edge |= (marks[n] & mark::outside) != 0;
+                // Lower ground beside the lake that was kept dry lies behind a dam that the grid
+                // does not show: no way leads there directly.
+                if (lake_of[n] != id && !(marks[n] & (mark::seen | mark::outside)) &&
+                    z[n] >= static_cast<float>(level_m)) {
+                    marks[n] |= mark::seen;
+                    touched.push_back(n);
+                    rim.push({z[n], n, z[n], n});
+                }
+            });
+            if (edge) { // the edge of the data cuts the lake as it stands
+                for (const Node n : touched)
+                    marks[n] &= static_cast<unsigned char>(~mark::seen);
+                spill.pass = spill.exit = at;
+                return spill;
+            }
         }
     return rise(z, marks, std::move(rim), spill, std::move(touched),
                 std::numeric_limits<double>::infinity());
@@ -249,7 +267,7 @@ std::optional<Spill> find_spill(const Grid<float>& z, Marks& marks, const LakeOf
 std::optional<Spill> find_spill(const Grid<float>& z, Marks& marks, Node seed, double up_to_m) {
     std::priority_queue<Step> rim;
     marks[seed] |= mark::seen;
-    rim.push({z[seed], seed});
+    rim.push({z[seed], seed, z[seed], seed});
     return rise(z, marks, std::move(rim),
                 {.level_m = double(z[seed]), .pass = seed, .exit = seed, .at_surface = true},
                 {seed}, up_to_m);

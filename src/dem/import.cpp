@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/text.hpp"
+#include "dem/checksums.hpp"
 #include "dem/fill.hpp"
 #include "dem/flat.hpp"
 #include "dem/lakes.hpp"
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <limits>
 
 namespace tarn::dem {
@@ -51,6 +51,9 @@ void ImportOptions::validate() const {
         throw Error("--radius needs a centre", "give --at LAT,LON");
     if (radius_km && bounds)
         throw Error("--radius and --bounds exclude each other");
+    if (bounds && !(std::abs(bounds->west_deg) <= 540.0 && std::abs(bounds->east_deg) <= 540.0))
+        throw Error("--bounds reaches beyond 540 degrees",
+                    "write WEST,SOUTH,EAST,NORTH in degrees");
     if (bounds && !(bounds->west_deg < bounds->east_deg && bounds->south_deg < bounds->north_deg &&
                     bounds->south_deg >= -90.0 && bounds->north_deg <= 90.0))
         throw Error(
@@ -175,7 +178,13 @@ private:
     }
     void fill_level(double level_m, std::optional<Node> seed);
     void fill_found(Node at);
+    void tell_cut_short() {
+        if (lakes_.size() >= search().most_lakes)
+            note(text("only the ", lakes_.size(),
+                      " largest lakes were kept; --min-area leaves out the small ones"));
+    }
     void number_lakes();
+    void open_surveys();
     void make_bed(const FoundLake& lake, std::size_t& made);
     double surface_height(const FoundLake& lake) const;
     Surface surface() const {
@@ -185,8 +194,9 @@ private:
     const ImportOptions& options_;
     const Progress& progress_;
     ImportReport report_;
-    std::vector<std::future<std::string>> checksums_; ///< of report_.inputs, in their order
-    std::vector<Source> sources_;
+    Checksums checksums_; ///< of report_.inputs, in their order
+    std::vector<Source> sources_, surveys_;
+    SoundingFile soundings_;
     Mosaic mosaic_;
     Marks marks_;
     LakeOf lake_of_;
@@ -195,15 +205,13 @@ private:
     std::vector<double> flat_share_;
     std::vector<Bed> beds_;
     Boxes boxes_;
-    bool level_given_ = false;
 };
 
 void Work::add_input(Source& source, const std::string& role) {
     source.input.role = role;
     report_.notes.insert(report_.notes.end(), source.notes.begin(), source.notes.end());
     report_.inputs.push_back(source.input);
-    checksums_.push_back(
-        std::async(std::launch::async, [path = source.path] { return checksum(path); }));
+    checksums_.add(source.path);
 }
 
 void Work::open() {
@@ -282,7 +290,6 @@ std::size_t Work::least_nodes() const {
 
 /// `--level M`: all that the level reaches from the seed.
 void Work::fill_level(double level_m, std::optional<Node> seed) {
-    level_given_ = true;
     level_m = snapped(level_m, surfaces_, mosaic_, seed, report_.notes);
     const float highest = highest_wet(level_m, has_surface(surfaces_, level_m));
     if (seed) {
@@ -373,6 +380,7 @@ void Work::choose_and_fill() {
                   fixed(double(lakes_[0].nodes) * mosaic_.spacing_m * mosaic_.spacing_m / 1e6, 3),
                   " km2 at ", place(mosaic_, lakes_[0].seeds.front())));
     }
+    tell_cut_short();
     number_lakes();
     if (lakes_.size() > 1)
         note(text(lakes_.size() - 1,
@@ -385,6 +393,7 @@ void Work::find_all() {
     lakes_ = find_lakes(search(), surfaces_, 1);
     std::stable_partition(lakes_.begin(), lakes_.end(),
                           [](const FoundLake& lake) { return !lake.sea; });
+    tell_cut_short();
     number_lakes();
 }
 
@@ -412,6 +421,9 @@ void Work::number_lakes() {
             flat[k] += (marks_.values[i] & (mark::flat | mark::filled)) != 0;
             voids[k] += (marks_.values[i] & mark::filled) != 0;
         }
+    if (!lakes_.empty() && nodes[0] == 0)
+        throw Error("the lake lies against others and keeps no node of its own",
+                    "give --lakes one, or another --level");
     for (std::size_t k = 0; k < lakes_.size(); ++k) {
         lakes_[k].nodes = nodes[k];
         flat_share_.push_back(nodes[k] ? double(flat[k]) / double(nodes[k]) : 0.0);
@@ -452,71 +464,82 @@ void Work::make_bed(const FoundLake& lake, std::size_t& made) {
         place.surface_m = surface_height(lake);
     if (options_.bathymetry_level_m)
         place.surface_m = *options_.bathymetry_level_m;
-    if (std::abs(place.surface_m - lake.level_m) > 0.05)
-        note(text("depths count from ", fixed(place.surface_m, 2), " m",
-                  options_.bathymetry_level_m ? "" : ", the DEM's own water surface"));
     const Box box = place.widened();
     Grid<float> survey(place.size(), std::numeric_limits<float>::quiet_NaN());
     BathymetryKind kind = options_.bathymetry_kind;
+    const double offset_m = options_.bathymetry_offset_m;
+    const auto settle_kind = [&](const std::vector<float>& inside) {
+        if (kind != BathymetryKind::automatic || inside.empty())
+            return;
+        kind = judge_kind(inside, place.surface_m - offset_m);
+        note(std::string("bathymetry values taken as ") +
+             (kind == BathymetryKind::depth ? "depths" : "elevations") +
+             " (by their values near the shore; --bathymetry-kind says otherwise)");
+    };
+    std::vector<float> inside;
     if (options_.bathymetry) {
-        auto surveys = open_sources(
+        for (Source& part :
+             surveys_) { // a zip may hold several; the last one counts, as with tiles
+            const Grid<float> values = onto_grid(part, mosaic_, box.first, survey.size, "bilinear");
+            for (std::size_t i = 0; i < survey.values.size(); ++i)
+                if (!std::isnan(values.values[i]))
+                    survey.values[i] = values.values[i];
+        }
+        for (int row = 0; row < survey.size.rows; ++row)
+            for (int col = 0; col < survey.size.cols; ++col)
+                if (place.wet({box.first.col + col, box.first.row + row}) &&
+                    !std::isnan(survey[{col, row}]))
+                    inside.push_back(survey[{col, row}]);
+        settle_kind(inside);
+        if (kind == BathymetryKind::elevation)
+            for (float& v : survey.values)
+                v += float(offset_m);
+    } else {
+        for (const Sounding& s : soundings_.soundings)
+            if (place.wet({int(std::lround(s.col)), int(std::lround(s.row))}))
+                inside.push_back(float(s.value));
+        settle_kind(inside);
+        if (!inside.empty()) {
+            std::vector<Sounding> moved = soundings_.soundings;
+            if (kind == BathymetryKind::elevation)
+                for (Sounding& s : moved)
+                    s.value += offset_m;
+            note(text(inside.size(), " of ", moved.size(),
+                      " soundings lie in the lake; the bed between them and the shore (depth 0) is "
+                      "interpolated linearly over triangles"));
+            survey =
+                grid_soundings(place, moved, kind == BathymetryKind::depth ? 0.0 : place.surface_m);
+        }
+    }
+    if (inside.empty())
+        return;
+    if (std::abs(place.surface_m - lake.level_m) > 0.05)
+        note(text("depths count from ", fixed(place.surface_m, 2), " m",
+                  options_.bathymetry_level_m ? "" : ", the DEM's own water surface"));
+    const auto notes = merge_bathymetry(mosaic_.elevation_m, place, survey, kind);
+    report_.notes.insert(report_.notes.end(), notes.begin(), notes.end());
+    beds_[k] = options_.bathymetry ? Bed::measured : Bed::interpolated;
+    ++made;
+}
+
+void Work::open_surveys() {
+    if (options_.bathymetry) {
+        surveys_ = open_sources(
             *options_.bathymetry,
             {.crs = options_.bathymetry_crs,
              .nodata = std::numeric_limits<double>::quiet_NaN(), // 0 is a depth, no collar
              .unit = {},
              .depths_below_m = {},
              .crs_hint = "give it with --bathymetry-crs EPSG:..."});
-        for (Source& part : surveys) { // a zip may hold several; the last one counts, as with tiles
-            if (made == 0)
-                add_input(part, "bathymetry");
-            const Grid<float> values = onto_grid(part, mosaic_, box.first, survey.size, "bilinear");
-            for (std::size_t i = 0; i < survey.values.size(); ++i)
-                if (!std::isnan(values.values[i]))
-                    survey.values[i] = values.values[i];
-        }
-    } else {
-        SoundingFile file = read_soundings(*options_.soundings, options_.depth_field,
-                                           options_.bathymetry_crs, mosaic_);
-        std::vector<float> inside;
-        for (const Sounding& s : file.soundings)
-            if (place.wet({int(std::lround(s.col)), int(std::lround(s.row))}))
-                inside.push_back(float(s.value));
-        if (!inside.empty()) {
-            if (made == 0) {
-                file.input.checksum = checksum(options_.soundings->string());
-                report_.inputs.push_back(file.input);
-                std::promise<std::string> known;
-                known.set_value(file.input.checksum);
-                checksums_.push_back(known.get_future());
-                report_.notes.insert(report_.notes.end(), file.notes.begin(), file.notes.end());
-            }
-            if (kind == BathymetryKind::automatic) {
-                kind = judge_kind(inside, place.surface_m);
-                note(std::string("soundings taken as ") +
-                     (kind == BathymetryKind::depth ? "depths" : "elevations") +
-                     " (by their values near the shore; --bathymetry-kind says otherwise)");
-            }
-            note(text(inside.size(), " of ", file.soundings.size(),
-                      " soundings lie in the lake; the bed between them and the shore (depth 0) is "
-                      "interpolated linearly over triangles"));
-            survey = grid_soundings(place, file.soundings,
-                                    kind == BathymetryKind::depth ? 0.0 : place.surface_m);
-        }
-    }
-    if (options_.bathymetry_offset_m != 0.0 && kind != BathymetryKind::depth)
-        for (float& v : survey.values)
-            v += float(options_.bathymetry_offset_m);
-    bool any = false;
-    for (int row = box.first.row; row <= box.second.row && !any; ++row)
-        for (int col = box.first.col; col <= box.second.col && !any; ++col)
-            any = place.wet({col, row}) &&
-                  !std::isnan(survey[{col - box.first.col, row - box.first.row}]);
-    if (!any)
+        for (Source& part : surveys_)
+            add_input(part, "bathymetry");
         return;
-    const auto notes = merge_bathymetry(mosaic_.elevation_m, place, survey, kind);
-    report_.notes.insert(report_.notes.end(), notes.begin(), notes.end());
-    beds_[k] = options_.bathymetry ? Bed::measured : Bed::interpolated;
-    ++made;
+    }
+    soundings_ =
+        read_soundings(*options_.soundings, options_.depth_field, options_.bathymetry_crs, mosaic_);
+    report_.inputs.push_back(soundings_.input);
+    checksums_.add(options_.soundings->string());
+    report_.notes.insert(report_.notes.end(), soundings_.notes.begin(), soundings_.notes.end());
 }
 
 void Work::make_beds() {
@@ -527,6 +550,7 @@ void Work::make_beds() {
     }
     if (options_.bathymetry || options_.soundings) {
         progress_.report(0.72, "merging the bathymetry");
+        open_surveys();
         std::size_t made = 0;
         for (const FoundLake& lake : lakes_)
             if (!lake.sea && lake.nodes > 0)
@@ -579,10 +603,13 @@ std::vector<LakeRecord> Work::measure_lakes() {
         record.flat_share = flat_share_[k];
         record.bed =
             beds_.empty() ? (flat_share_[k] > 0.5 ? Bed::unknown : Bed::measured) : beds_[k];
-        if (lakes_[k].nodes > 0)
+        if (lakes_[k].nodes > 0) {
             measure(record, surface(), lake_of_, boxes_[k], mosaic_.frame);
+            record.parts = parts_of(lake_of_, marks_, record.id, boxes_[k]);
+        }
         out.push_back(record);
     }
+    clear(marks_, mark::seen);
     return out;
 }
 
@@ -611,10 +638,18 @@ void Work::tell_spill(LakeRecord& lake) {
         for (const Node seed : lakes_[0].seeds)
             if (s.middle == seed)
                 surface_m = std::max(surface_m, double(s.level_m));
-    if (spill->level_m <= surface_m || spill->pass == spill->exit) {
+    if (spill->level_m <= surface_m) {
         lake.spill->at_surface = true;
         note("the lake touches the edge of the data: it may go on outside, and its figures count "
              "only what is inside");
+        return;
+    }
+    if (spill->pass == spill->exit) {
+        note(text(
+            "at ", fixed(lake.level_m, 2), " m the water runs out of the data at ",
+            place(mosaic_, spill->exit), ", over ground of ", fixed(spill->level_m, 2),
+            " m: the lake may go on outside, and its figures count only what is inside; up to ",
+            fixed(spill->level_m, 2), " m it stays inside"));
         return;
     }
     note(text("at ", fixed(lake.level_m, 2), " m the water spills over a pass of ",
@@ -665,8 +700,6 @@ ImportResult Work::pack(std::vector<LakeRecord> lakes, const HeightsSink& keep_h
     pour(out.water, lake_of_, levels);
     lake_of_ = {};
     std::erase_if(lakes, [](const LakeRecord& lake) { return lake.area_m2 == 0.0; });
-    if (lakes.empty())
-        throw Error("the lake has no node of its own", "give --lakes one");
     out.lakes = std::move(lakes);
     out.frame = mosaic_.frame;
     if (options_.ortho) {
@@ -678,8 +711,9 @@ ImportResult Work::pack(std::vector<LakeRecord> lakes, const HeightsSink& keep_h
 }
 
 ImportReport Work::finish_report() {
-    for (std::size_t i = 0; i < checksums_.size(); ++i)
-        report_.inputs[i].checksum = checksums_[i].get();
+    const auto sums = checksums_.finish(progress_);
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        report_.inputs[i].checksum = sums[i];
     return std::move(report_);
 }
 

@@ -26,8 +26,8 @@ struct LakeSearch {
                               ///< flat in it
     Marks& marks;             ///< mark::flat is set on all surfaces
     LakeOf& lake_of;
-    std::size_t least_nodes = 20; ///< smaller lakes are dropped
-    std::size_t most_lakes = 1000;
+    std::size_t least_nodes = 20;    ///< smaller lakes are dropped
+    std::size_t most_lakes = 60'000; ///< ids have 16 bits
 };
 
 /// Adds, to the exactly flat surfaces, those that are flat but for some centimetres, and voids that

@@ -744,11 +744,7 @@ Extent join_over_the_date_line(std::vector<Source>& sources) {
 
 Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
                      const Progress& progress) {
-    Extent all = join_over_the_date_line(sources);
-    if (all.east - all.west > 60.0 || all.north - all.south > 60.0)
-        throw Error(text("the data reach over ", fixed(all.east - all.west, 1), " x ",
-                         fixed(all.north - all.south, 1), " degrees"),
-                    "one scene serves one lake's surroundings: cut it with --at and --radius");
+    const Extent all = join_over_the_date_line(sources);
     std::optional<Bounds> bounds = options.bounds;
     if (bounds) { // a place may be counted from either side of the 180th meridian
         const double turn = bounds->east_deg < all.west   ? 360.0
@@ -758,6 +754,11 @@ Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
         bounds->east_deg += turn;
     }
     Extent region = wanted_extent(all, bounds, wgs84());
+
+    if (region.east - region.west > 60.0 || region.north - region.south > 60.0)
+        throw Error(text("the data reach over ", fixed(region.east - region.west, 1), " x ",
+                         fixed(region.north - region.south, 1), " degrees"),
+                    "one scene serves one lake's surroundings: cut it with --at and --radius");
 
     Mosaic out;
     out.frame =
@@ -772,12 +773,25 @@ Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
     Extent box;
     for (Source& source : sources) {
         auto to = between(source.crs, local);
-        const Extent image = image_of(outline(source), *to, source.name);
+        // The far ends of a world map have no place in a local projection: only what is used
+        // counts.
+        Extent used = outline(source);
+        if (options.bounds) {
+            auto back = between(wgs84(), source.crs);
+            const Extent wanted = image_of(region, *back, source.name);
+            used = used.clipped_to({wanted.west - 0.05 * (wanted.east - wanted.west),
+                                    wanted.south - 0.05 * (wanted.north - wanted.south),
+                                    wanted.east + 0.05 * (wanted.east - wanted.west),
+                                    wanted.north + 0.05 * (wanted.north - wanted.south)});
+            if (used.empty())
+                continue;
+        }
+        const Extent image = image_of(used, *to, source.name);
         box.add(image.west, image.south);
         box.add(image.east, image.north);
         const double* g = source.transform.v;
-        const double c = source.cols / 2.0, r = source.rows / 2.0;
-        double x[3] = {g[0] + c * g[1] + r * g[2], 0, 0}, y[3] = {g[3] + c * g[4] + r * g[5], 0, 0};
+        double x[3] = {(used.west + used.east) / 2, 0, 0},
+               y[3] = {(used.south + used.north) / 2, 0, 0};
         x[1] = x[0] + g[1], y[1] = y[0] + g[4];
         x[2] = x[0] + g[2], y[2] = y[0] + g[5];
         GdalMessages quiet;

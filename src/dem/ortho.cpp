@@ -63,7 +63,7 @@ Ortho warp_ortho(Source& source, const geo::Frame& frame, const Heightfield& gro
     GDALDataset* input = source.original.get();
     GDALRasterBand& first = *input->GetRasterBand(1);
     if (first.GetColorInterpretation() == GCI_PaletteIndex) {
-        Arguments expand{"-of", "MEM", "-expand", "rgba"};
+        Arguments expand{"-of", "VRT", "-expand", "rgba"};
         view = translate(*input, expand, source.name);
         input = view.get();
     } else if (first.GetRasterDataType() != GDT_Byte) {
@@ -71,7 +71,7 @@ Ortho warp_ortho(Source& source, const geo::Frame& frame, const Heightfield& gro
         // transparent becomes an alpha band, for after the stretch no value is left to say so.
         const int bands = input->GetRasterCount(), colours = bands >= 3 ? 3 : 1;
         const auto [low, high] = colour_range(*input, colours);
-        Arguments scale{"-of", "MEM", "-ot", "Byte", "-a_nodata", "none"};
+        Arguments scale{"-of", "VRT", "-ot", "Byte", "-a_nodata", "none"};
         for (int b = 1; b <= colours + 1; ++b) {
             scale.add("-b");
             scale.add(b <= colours ? text(b) : "mask");

@@ -9,10 +9,12 @@
 #include <cpl_conv.h>
 #include <cpl_vsi.h>
 #include <cpl_vsi_error.h>
+#include <cstdio>
 #include <limits>
 #include <set>
 #include <sstream>
 #include <unistd.h>
+#include <zlib.h>
 
 namespace tarn::dem {
 
@@ -194,11 +196,20 @@ private:
         return remote;
     }
 
+    /// Blocks are counted as the server's file has them.
+    static std::pair<int, int> block_size(GDALDataset& tile) {
+        int width = 0, height = 0;
+        const char* kept = tile.GetMetadataItem("TARN_BLOCK_SIZE");
+        if (!kept || std::sscanf(kept, "%d,%d", &width, &height) != 2 || width < 1 || height < 1)
+            tile.GetRasterBand(1)->GetBlockSize(&width, &height);
+        return {width, height};
+    }
+
     static Blocks blocks_of(GDALDataset& tile, const Bounds& bounds) {
         double g[6];
         tile.GetGeoTransform(g);
-        int width = 0, height = 0;
-        tile.GetRasterBand(1)->GetBlockSize(&width, &height);
+        const std::pair<int, int> block = block_size(tile);
+        const int width = block.first, height = block.second;
         constexpr double margin = 4.0; // pixels: what interpolation looks at
         const double shift = bounds.west_deg > g[0] + g[1] * tile.GetRasterXSize() ? 360.0
                              : bounds.east_deg < g[0]                              ? -360.0
@@ -228,8 +239,8 @@ private:
                   double to) {
         GdalMessages messages;
         GDALRasterBand& band = *remote.GetRasterBand(1);
-        int width = 0, height = 0;
-        band.GetBlockSize(&width, &height);
+        const std::pair<int, int> size = block_size(remote);
+        const int width = size.first, height = size.second;
         const GDALDataType type = band.GetRasterDataType();
         const int cols = remote.GetRasterXSize(), rows = remote.GetRasterYSize();
         fs::create_directories(local_.parent_path());
@@ -239,6 +250,8 @@ private:
             options.SetNameValue("TILED", "YES");
             options.SetNameValue("BLOCKXSIZE", text(width).c_str());
             options.SetNameValue("BLOCKYSIZE", text(height).c_str());
+        } else {
+            options.SetNameValue("BLOCKYSIZE", text(height).c_str()); // strips
         }
         options.SetNameValue("SPARSE_OK", "TRUE");
         options.SetNameValue("COMPRESS", "DEFLATE");
@@ -275,7 +288,8 @@ private:
         const auto carry = [&](GDALDataset& source, const std::pair<int, int>& block) {
             const int x = block.first * width, y = block.second * height;
             const int w = std::min(width, cols - x), h = std::min(height, rows - y);
-            return source.GetRasterBand(1)->RasterIO(GF_Read, x, y, w, h, buffer.data(), w, h, type,
+            return w > 0 && h > 0 &&
+                   source.GetRasterBand(1)->RasterIO(GF_Read, x, y, w, h, buffer.data(), w, h, type,
                                                      0, 0) == CE_None &&
                    out->GetRasterBand(1)->RasterIO(GF_Write, x, y, w, h, buffer.data(), w, h, type,
                                                    0, 0) == CE_None;
@@ -287,8 +301,9 @@ private:
                                 "fetching " + source_.name);
                 if (!carry(remote, block)) {
                     const std::string said = messages.last();
-                    fail(source_.name + ": " + url_ + " cannot be read (" + said + ")",
-                         "try again later, or raise --timeout; what was fetched is kept");
+                    fail(
+                        source_.name + ": " + url_ + " cannot be read (" + said + ")",
+                        "try again later, or raise --timeout; whole tiles fetched before are kept");
                 }
             }
         } catch (const Cancelled&) {
@@ -308,8 +323,13 @@ private:
             list += text(c, ",", r, ";");
         out->SetMetadataItem("TARN_URL", url_.c_str());
         out->SetMetadataItem("TARN_BLOCKS", list.c_str());
+        out->SetMetadataItem("TARN_BLOCK_SIZE", text(width, ",", height).c_str());
+        const GdalMessages closing; // a full disk shows only when the last block goes out
         out->FlushCache(true);
         out.reset();
+        if (closing.failed())
+            fail(local_.string() + ": cannot be written (" + closing.last() + ")",
+                 "check the free space, or name another folder with --cache");
         std::error_code failed;
         fs::rename(partial, local_, failed);
         if (failed)
@@ -357,7 +377,12 @@ Fetched fetch_tiles(const RemoteSource& source, const Bounds& bounds, const Fetc
         const std::string url = tile_url(source, tiles[i].south, tiles[i].west);
         if (first_url.empty())
             first_url = url;
-        const fs::path local = options.cache / source.name / fs::path(url).filename();
+        // Tiles may have one name in many folders: the URL's checksum tells them apart.
+        const auto sum = ::crc32(0, reinterpret_cast<const unsigned char*>(url.data()),
+                                 static_cast<unsigned>(url.size()));
+        char folder[16];
+        std::snprintf(folder, sizeof folder, "%08lx", static_cast<unsigned long>(sum));
+        const fs::path local = options.cache / source.name / folder / fs::path(url).filename();
         TileCopy tile(source, url, local);
         const double step = 0.02 / double(tiles.size());
         if (tile.bring(bounds, out, progress, step * double(i), step * double(i + 1)))

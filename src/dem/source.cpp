@@ -9,7 +9,6 @@
 #include <cpl_vsi.h>
 #include <cstdio>
 #include <span>
-#include <zlib.h>
 
 namespace tarn::dem {
 
@@ -31,23 +30,6 @@ std::string describe(const OGRSpatialReference& crs) {
     std::string out = name && *name ? name : "unnamed";
     if (authority && code)
         out += text(" (", authority, ":", code, ")");
-    return out;
-}
-
-std::string checksum(const std::string& path) {
-    if (path.starts_with("/vsicurl"))
-        return "not taken (remote)"; // it would fetch the whole file
-    VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
-    if (!file)
-        return "unreadable";
-    auto crc = static_cast<std::uint32_t>(::crc32(0, nullptr, 0));
-    std::vector<unsigned char> buffer(1 << 20);
-    std::size_t got = 0;
-    while ((got = VSIFReadL(buffer.data(), 1, buffer.size(), file)) > 0)
-        crc = static_cast<std::uint32_t>(::crc32(crc, buffer.data(), static_cast<unsigned>(got)));
-    VSIFCloseL(file);
-    char out[16];
-    std::snprintf(out, sizeof out, "%08x", crc);
     return out;
 }
 
@@ -228,9 +210,8 @@ std::size_t collar_nodes(GDALDataset& heights, const std::string& name) {
     const auto zeros = [](std::span<const float> values) {
         return std::size_t(std::count(values.begin(), values.end(), 0.0f));
     };
-    if (zeros(read(0, 0, cols, 1)) + zeros(read(0, rows - 1, cols, 1)) +
-            zeros(read(0, 0, 1, rows)) + zeros(read(cols - 1, 0, 1, rows)) <
-        4)
+    // Slanted collars touch the first or last row; upright ones fill the corners.
+    if (zeros(read(0, 0, cols, 1)) + zeros(read(0, rows - 1, cols, 1)) < 2)
         return 0;
     std::size_t found = 0, others = 0;
     for (int row = 0; row < rows; ++row)

@@ -49,9 +49,6 @@ std::vector<Source> open_sources(const std::filesystem::path& path, const Source
 /// As above for pictures (orthophotos): the dataset as it is, CRS checked.
 Source open_picture(const std::filesystem::path& path, const std::string& crs);
 
-/// CRC-32 (as zip has it) of a file's bytes, hexadecimal.
-std::string checksum(const std::string& path);
-
 /// "EPSG:..." or the name a CRS carries.
 std::string describe(const OGRSpatialReference& crs);
 

@@ -26,9 +26,12 @@ LakeOf footprint(const Heightfield& ground, const Heightfield& water, const Lake
     const auto wet = [&](Node n) {
         return water.codes[n] == code && ground.elevation_m(n) < water.elevation_m(n);
     };
-    out[lake.seed] = 1;
+    std::vector<Node> seeds = lake.parts;
+    seeds.push_back(lake.seed);
+    for (const Node seed : seeds)
+        out[seed] = 1;
     search<8>(
-        ground.size(), {lake.seed},
+        ground.size(), seeds,
         [&](Node n) {
             if (out[n] || !wet(n))
                 return false;
@@ -59,12 +62,13 @@ Grid<float> wetting_heights(const Grid<float>& z, const LakeOf& lake, double lev
             const Node at{col, row};
             if (!lake[at])
                 continue;
-            out[at] = z[at];
+            // What the scene shows as wet is wet at its level, even where the bed just reaches it.
+            out[at] = std::min(z[at], highest_wet(level_m, false));
             each_neighbour(z.size, at, [&](Node n) {
                 // Lower ground beside the lake that the import kept dry lies behind a dam that
                 // the grid does not show: no way leads there directly.
                 if (joined(at, n) && !lake[n] && out[n] == never &&
-                    double(z[n]) >= level_m - 1e-6) {
+                    z[n] >= static_cast<float>(level_m)) {
                     out[n] = z[n];
                     rim.push({z[n], n});
                 }
@@ -224,10 +228,12 @@ StageTable stage_table(const Grid<float>& z, const Heightfield& ground, const He
         }
         if (sum.nodes == 0)
             continue;
-        for (std::size_t i = 0; i < mask.values.size(); ++i)
-            mask.values[i] = wets.values[i] <= wet_to[k];
         const Box box{sum.low, sum.high};
-        s.shoreline_m = shoreline_length_m(s.level_m, surface, mask, 1, box);
+        for (int row = box.first.row; row <= box.second.row; ++row)
+            for (int col = box.first.col; col <= box.second.col; ++col)
+                mask[{col, row}] = wets[{col, row}] <= wet_to[k];
+        s.shoreline_m =
+            shoreline_length_m(s.level_m, surface, mask, 1, box, lake.bed == Bed::unknown);
         s.islands = count_islands(mask, 1, box);
         s.pools = count_pools(mask, box);
     }

@@ -58,7 +58,7 @@ Boxes boxes_of(const LakeOf& lakes, int count) {
 }
 
 double shoreline_length_m(double level_m, const Surface& ground, const LakeOf& lakes, int id,
-                          const Box& box) {
+                          const Box& box, bool midway) {
     const auto [low, high] = box;
     double length = 0.0;
     const double s = ground.spacing_m;
@@ -86,7 +86,7 @@ double shoreline_length_m(double level_m, const Surface& ground, const LakeOf& l
                 if (is_wet[k] == is_wet[m])
                     continue;
                 const double a = std::abs(above[k]), b = std::abs(above[m]);
-                const double f = a + b > 0.0 ? a / (a + b) : 0.5;
+                const double f = midway || a + b == 0.0 ? 0.5 : a / (a + b);
                 x[crossings] = corner_x[k] + f * (corner_x[m] - corner_x[k]);
                 y[crossings] = corner_y[k] + f * (corner_y[m] - corner_y[k]);
                 ++crossings;
@@ -95,6 +95,28 @@ double shoreline_length_m(double level_m, const Surface& ground, const LakeOf& l
                 length += s * std::hypot(x[k + 1] - x[k], y[k + 1] - y[k]);
         }
     return length;
+}
+
+std::vector<Node> parts_of(const LakeOf& lakes, Marks& marks, int id, const Box& box) {
+    std::vector<Node> out;
+    for (int row = box.first.row; row <= box.second.row; ++row)
+        for (int col = box.first.col; col <= box.second.col; ++col) {
+            const Node start{col, row};
+            if (lakes[start] != id || (marks[start] & mark::seen))
+                continue;
+            out.push_back(start);
+            marks[start] |= mark::seen;
+            search<8>(
+                lakes.size, {start},
+                [&](Node n) {
+                    if (lakes[n] != id || (marks[n] & mark::seen))
+                        return false;
+                    marks[n] |= mark::seen;
+                    return true;
+                },
+                [](Node) {});
+        }
+    return out;
 }
 
 int count_islands(const LakeOf& lakes, int id, const Box& box) {
@@ -179,7 +201,8 @@ void measure(LakeRecord& record, const Surface& ground, const LakeOf& lakes, con
         record.max_depth_m = deepest;
         record.mean_depth_m = depth_sum / double(nodes);
     }
-    record.shoreline_m = shoreline_length_m(level_m, ground, lakes, id, box);
+    record.shoreline_m =
+        shoreline_length_m(level_m, ground, lakes, id, box, record.bed == Bed::unknown);
     record.islands = count_islands(lakes, id, box);
     record.seed = innermost(lakes, id, low, high);
     record.position = geo::to_geo(frame, {ground.west_m + record.seed.col * ground.spacing_m,

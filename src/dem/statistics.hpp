@@ -34,9 +34,14 @@ Boxes boxes_of(const LakeOf& lakes, int count);
 void measure(LakeRecord& record, const Surface& ground, const LakeOf& lakes, const Box& box,
              const geo::Frame& frame);
 
+/// A node of each connected part of lake `id` (8 neighbours). Leaves mark::seen on its nodes.
+std::vector<Node> parts_of(const LakeOf& lakes, Marks& marks, int id, const Box& box);
+
 /// Length of the curve between lake `id` and the land around and in it.
+/// @param midway  between a wet and a dry node it runs half way, whatever the heights: of water
+///                whose surface is all that the data hold
 double shoreline_length_m(double level_m, const Surface& ground, const LakeOf& lakes, int id,
-                          const Box& box);
+                          const Box& box, bool midway);
 
 /// Dry parts inside the box (widened by one) that its rim cannot reach by 4-neighbour steps.
 int count_islands(const LakeOf& lakes, int id, const Box& box);

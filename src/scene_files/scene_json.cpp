@@ -30,6 +30,13 @@ json spill_json(const std::optional<LakeSpill>& spill) {
             {"at_surface", spill->at_surface}};
 }
 
+json nodes_json(const std::vector<Node>& nodes) {
+    json out = json::array();
+    for (const Node n : nodes)
+        out.push_back({n.col, n.row});
+    return out;
+}
+
 json lake_json(const LakeRecord& lake) {
     return {{"id", lake.id},
             {"name", lake.name},
@@ -50,6 +57,7 @@ json lake_json(const LakeRecord& lake) {
             {"lat_deg", lake.position.lat_deg},
             {"lon_deg", lake.position.lon_deg},
             {"seed_node", {lake.seed.col, lake.seed.row}},
+            {"part_nodes", nodes_json(lake.parts)},
             {"box_nodes",
              {lake.west_north.col, lake.west_north.row, lake.east_south.col, lake.east_south.row}}};
 }
@@ -160,6 +168,11 @@ LakeRecord read_lake(const Field& f, GridSize size) {
     lake.position = {f["lat_deg"].number(-90, 90), f["lon_deg"].number(-540, 540)};
     f["seed_node"].array_size(2, 2);
     lake.seed = f["seed_node"].node(0, size);
+    const Field parts = f["part_nodes"];
+    for (std::size_t i = 0, n = parts.array_size(0, 1'000'000); i < n; ++i) {
+        parts.at(i).array_size(2, 2);
+        lake.parts.push_back(parts.at(i).node(0, size));
+    }
     f["box_nodes"].array_size(4, 4);
     lake.west_north = f["box_nodes"].node(0, size);
     lake.east_south = f["box_nodes"].node(2, size);

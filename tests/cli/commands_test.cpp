@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <sstream>
 
 using namespace tarn;
 using test_support::Outcome;
@@ -408,4 +409,76 @@ TEST(Install, TheDebianPackageHoldsAProgramThatRuns) {
     EXPECT_EQ(doctor.code, 0) << doctor.err;
     EXPECT_EQ(nlohmann::json::parse(doctor.out).at("shaders").get<std::string>(),
               (t / "root/usr/share/tarn/shaders").string());
+}
+
+TEST(Stats, TableAndPlotOfTheBowlAndNothingElseIsRun) {
+    const TempFolder folder;
+    const auto trap = folder / "trap";
+    const Outcome made =
+        run("tarn import " + shared().dem + " --level 10 --name 'Lake `touch " + trap.string() +
+            "` \"$(touch " + trap.string() + ")\"' -o " + (folder / "named").string());
+    ASSERT_EQ(made.code, 0) << made.err;
+    const auto plot = folder / "it's a plot.png";
+    const Outcome o = run("tarn stats " + (folder / "named").string() +
+                          " --levels 2:10:2 --plot \"" + plot.string() + "\"");
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_FALSE(fs::exists(trap));
+    EXPECT_GT(fs::file_size(plot), 5000u);
+    std::istringstream table(o.out);
+    std::string line;
+    std::getline(table, line);
+    EXPECT_EQ(line.substr(0, 15), "level_m,area_m2");
+    int rows = 0;
+    double before = -1.0;
+    while (std::getline(table, line)) {
+        double level = 0, area = 0;
+        ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf", &level, &area), 2);
+        EXPECT_NEAR(area, M_PI * 250'000 * level / 40, 0.03 * M_PI * 250'000 * level / 40);
+        EXPECT_GT(area, before);
+        before = area;
+        ++rows;
+    }
+    EXPECT_EQ(rows, 5);
+    const auto j =
+        nlohmann::json::parse(run("tarn stats " + shared().scene + " --levels 10,5 --json").out);
+    EXPECT_EQ(j["stages"].size(), 2u);
+    const auto info = nlohmann::json::parse(run("tarn info " + shared().scene + " --json").out);
+    EXPECT_EQ(j["stages"][0]["area_m2"], info["lakes"][0]["area_m2"]);
+    EXPECT_NEAR(j["stages"][0]["volume_m3"].get<double>(),
+                info["lakes"][0]["volume_m3"].get<double>(), 1.0);
+    EXPECT_EQ(run("tarn stats " + shared().scene + " --levels 10:5:1").code, 1);
+    EXPECT_EQ(run("tarn stats " + shared().scene + " --levels 1:9e9:1").code, 1);
+    EXPECT_EQ(run("tarn stats " + shared().scene + " --levels 5 --lake 9").code, 1);
+    EXPECT_EQ(run("tarn stats " + shared().scene + " --levels 5 --plot x.gif").code, 1);
+}
+
+TEST(Detect, ListsLakesForPeopleAndPrograms) {
+    const TempFolder folder;
+    Grid<float> z({200, 200});
+    for (int r = 0; r < 200; ++r)
+        for (int c = 0; c < 200; ++c) {
+            z[{c, r}] =
+                float(300 + 0.37 * c + 0.21 * r + 3 * std::sin(c * 0.7) * std::cos(r * 0.9));
+            if (std::hypot(c - 60, r - 60) < 25)
+                z[{c, r}] = 290.0f;
+            if (std::hypot(c - 140, r - 150) < 15)
+                z[{c, r}] = 295.5f;
+        }
+    const double t[6] = {500'000, 10, 0, 5'300'000, 0, -10};
+    dem::write_elevations(folder / "two.tif", z, "EPSG:32633", t, "");
+    const Outcome words = run("tarn detect " + (folder / "two.tif").string());
+    ASSERT_EQ(words.code, 0) << words.err;
+    EXPECT_NE(words.out.find("290.000"), std::string::npos) << words.out;
+    EXPECT_NE(words.out.find("295.500"), std::string::npos) << words.out;
+    const auto j =
+        nlohmann::json::parse(run("tarn detect " + (folder / "two.tif").string() + " --json").out);
+    ASSERT_EQ(j["lakes"].size(), 2u);
+    for (const char* name :
+         {"id", "name", "level_m", "area_m2", "true_area_m2", "volume_m3", "max_depth_m",
+          "mean_depth_m", "shoreline_m", "islands", "lat_deg", "lon_deg", "open_at_edge", "bed"})
+        EXPECT_TRUE(j["lakes"][0].contains(name)) << name;
+    EXPECT_EQ(j["lakes"][0]["bed"], "unknown");
+    const Outcome none = run("tarn detect " + (folder / "two.tif").string() + " --min-area 5");
+    EXPECT_EQ(none.code, 0);
+    EXPECT_NE(none.out.find("no water surface of at least 5.00 km2"), std::string::npos);
 }

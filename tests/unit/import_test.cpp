@@ -229,6 +229,65 @@ TEST(Import, TilesOnBothSidesOfTheDateLineAreJoined) {
     }
 }
 
+TEST(Import, AWorldMapCanBeCut) {
+    const TempFolder folder;
+    Grid<float> z({1440, 720}, 500.0f);
+    for (int r = 170; r < 180; ++r) // a great lake around 46 N 9 E
+        for (int c = 750; c < 762; ++c)
+            z[{c, r}] = 400.0f;
+    write(folder / "world.tif", z, -180.0, 90.0, 0.25, "EPSG:4326");
+    const auto result = dem::import_dem({.dems = {folder / "world.tif"},
+                                         .level_m = 450.0,
+                                         .at = GeoPoint{46.0, 9.0},
+                                         .radius_km = 300.0},
+                                        {});
+    EXPECT_NEAR(only(result).true_area_m2, 10 * 0.25 * 111.2e3 * 12 * 0.25 * 77.3e3, 0.1 * 6.4e10);
+    EXPECT_FALSE(only(result).open_at_edge);
+}
+
+TEST(Import, ADatumOffsetMovesElevationsAndNotDepths) {
+    const TempFolder folder;
+    Grid<float> z = bowl(201, 5.0);
+    for (float& v : z.values)
+        v += 100.0f;
+    Grid<float> bed = z, depth(z.size, NAN);
+    for (std::size_t i = 0; i < z.values.size(); ++i)
+        if (z.values[i] < 110.0f) {
+            depth.values[i] = 110.0f - z.values[i];
+            z.values[i] = 110.0f; // the DEM holds the surface
+        } else {
+            bed.values[i] = NAN;
+        }
+    for (float& v : bed.values)
+        v -= 3.0f; // a datum three metres off
+    write(folder / "flat.tif", z, 500'000, 5'300'000, 5.0);
+    write(folder / "bed.tif", bed, 500'000, 5'300'000, 5.0);
+    write(folder / "depth.tif", depth, 500'000, 5'300'000, 5.0);
+    std::ofstream csv(folder / "elevations.csv");
+    csv << "x,y,z\n";
+    for (int r = 0; r < 201; r += 3)
+        for (int c = 0; c < 201; c += 3)
+            if (!std::isnan(bed[Node(c, r)]))
+                csv << 500'002.5 + 5 * c << "," << 5'299'997.5 - 5 * r << "," << bed[Node(c, r)]
+                    << "\n";
+    csv.close();
+    dem::ImportOptions options{.dems = {folder / "flat.tif"}, .level_m = 110.0};
+    options.bathymetry_offset_m = 3.0;
+    const double volume = M_PI * 250 * 250 * 5;
+    for (const char* file : {"bed.tif", "depth.tif"}) {
+        options.bathymetry = folder / file;
+        const auto result = dem::import_dem(options, {});
+        EXPECT_NEAR(*only(result).volume_m3, volume, 0.01 * volume) << file;
+        EXPECT_NEAR(*only(result).max_depth_m, 10.0, 0.05) << file;
+    }
+    options.bathymetry.reset();
+    options.soundings = folder / "elevations.csv";
+    options.bathymetry_crs = "EPSG:32633";
+    const auto result = dem::import_dem(options, {});
+    EXPECT_NEAR(*only(result).volume_m3, volume, 0.015 * volume);
+    EXPECT_EQ(only(result).bed, Bed::interpolated);
+}
+
 TEST(Import, NoTileIsDroppedForItsVerticalDatum) {
     const TempFolder folder;
     const Grid<float> whole = bowl(200, 5.0);

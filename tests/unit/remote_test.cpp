@@ -179,8 +179,53 @@ TEST(Remote, AServerThatFailsOrHangsGivesOneLineAndKeepsTheCache) {
     EXPECT_EQ(place.says(around_lake), "no error");
     // A damaged copy is fetched anew.
     place.server.set_status(0);
-    std::ofstream(place.cache.path() / "here" / "N46E009.tif") << "not a tiff";
+    int broken = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(place.cache.path()))
+        if (entry.path().filename() == "N46E009.tif") {
+            std::ofstream(entry.path()) << "not a tiff";
+            ++broken;
+        }
+    EXPECT_EQ(broken, 1);
     EXPECT_EQ(place.says(around_lake), "no error");
+}
+
+TEST(Remote, TilesOfOneNameInManyFoldersAndStripsStayApart) {
+    Place place;
+    // {lat} as a folder; strips instead of blocks.
+    for (const char* lat : {"N45", "N46"}) {
+        std::filesystem::create_directory(place.root / lat);
+        dem::Dataset in(GDALDataset::Open((place.root / (std::string(lat) + "E009.tif")).c_str(),
+                                          GDAL_OF_RASTER));
+        dem::Arguments words{"-of", "GTiff", "-co", "BLOCKYSIZE=50"};
+        GDALTranslateOptions* options = GDALTranslateOptionsNew(words.get(), nullptr);
+        dem::Dataset out(GDALDataset::FromHandle(
+            GDALTranslate((place.root / lat / "E009.tif").c_str(), GDALDataset::ToHandle(in.get()),
+                          options, nullptr)));
+        GDALTranslateOptionsFree(options);
+        ASSERT_TRUE(out);
+    }
+    place.source.url = place.server.url() + "/{NS}{lat}/{EW}{lon}.tif";
+    const auto first =
+        dem::fetch_tiles(place.source, {9.01, 45.95, 9.05, 46.05}, place.options, Progress{});
+    ASSERT_EQ(first.tiles.size(), 2u);
+    EXPECT_NE(first.tiles[0], first.tiles[1]);
+    // Wider: what was kept and what is new together hold every height.
+    const auto wider =
+        dem::fetch_tiles(place.source, {9.01, 45.8, 9.05, 46.2}, place.options, Progress{});
+    EXPECT_GT(wider.blocks_cached, 0u);
+    for (const auto& [path, lat] : {std::pair{wider.tiles[0], 45}, std::pair{wider.tiles[1], 46}}) {
+        dem::Dataset ds(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER));
+        for (int r = 0; r < 1201; ++r) {
+            const double at = lat + 1 - r * step;
+            if (at < 45.8 || at > 46.2)
+                continue;
+            float z = 0;
+            ASSERT_EQ(
+                ds->GetRasterBand(1)->RasterIO(GF_Read, 40, r, 1, 1, &z, 1, 1, GDT_Float32, 0, 0),
+                CE_None);
+            ASSERT_FLOAT_EQ(z, height(at, 9 + 40 * step)) << at;
+        }
+    }
 }
 
 TEST(Remote, NothingIsAskedUnlessASourceIsNamed) {
