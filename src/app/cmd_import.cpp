@@ -127,6 +127,9 @@ void add_import(CLI::App& app, Run& run) {
         ->capture_default_str();
     c->add_option("--bathymetry-crs,--soundings-crs", options.bathymetry_crs,
                   "CRS of bathymetry or soundings instead of their own");
+    c->add_option("--bathymetry-unit", options.bathymetry_unit,
+                  "unit of bathymetry or soundings instead of their own")
+        ->check(CLI::IsMember({"m", "ft", "us-ft", "cm", "dm", "mm"}));
     c->add_option("--bathymetry-offset", options.bathymetry_offset_m,
                   "added to its elevations [m]: from its vertical datum to the DEM's")
         ->capture_default_str();

@@ -36,6 +36,8 @@ std::vector<double> parse_levels(const std::string& words) {
     } else {
         std::string commas = words;
         std::replace(commas.begin(), commas.end(), ':', ',');
+        if (std::count(words.begin(), words.end(), ':') != 2)
+            throw Error("--levels " + words + " makes no table", "write FROM:TO:STEP or a list");
         const auto v = parse_numbers("--levels", commas, 3);
         if (!(v[2] > 0.0 && v[1] >= v[0]) || !((v[1] - v[0]) / v[2] < 10'000.0))
             throw Error("--levels " + words + " makes no table",

@@ -62,7 +62,7 @@ void add_dem_options(CLI::App& c, DemWords& words) {
                  "distance between nodes [m]; default: loses nothing");
     c.add_option("--crs", options.crs, "CRS of the DEMs instead of their own, e.g. EPSG:27700");
     c.add_option("--unit", options.unit, "unit of the DEMs' heights instead of their own")
-        ->check(CLI::IsMember({"m", "ft", "us-ft"}));
+        ->check(CLI::IsMember({"m", "ft", "us-ft", "cm", "dm", "mm"}));
     c.add_option("--source", words.source,
                  "fetch tiles from the network: copernicus, 3dep, or one of your own");
     c.add_option("--sources", words.sources,

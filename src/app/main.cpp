@@ -59,7 +59,11 @@ int main(int argc, char** argv) {
         return 0;
     }
     try {
-        return run();
+        const int code = run();
+        std::cout.flush();
+        if (!std::cout)
+            throw Error("the output cannot be written", "check the free space");
+        return code;
     } catch (const Cancelled& stop) {
         app::end_progress();
         spdlog::warn(stop.what());

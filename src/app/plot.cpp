@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <unistd.h>
 
 namespace tarn::app {
@@ -90,7 +92,19 @@ void draw_stages(const StagePlot& plot, const fs::path& path) {
     script += "\nunset output\n";
     std::error_code failed;
     try {
+        if (!std::ofstream(partial))
+            throw Error(path.string() + ": cannot be written",
+                        "check the folder and its permissions");
         run_gnuplot(script);
+        // gnuplot does not say when the disk is full; a whole picture has its end.
+        std::ifstream made(partial, std::ios::binary);
+        const std::string content{std::istreambuf_iterator<char>(made), {}};
+        const std::string tail =
+            content.substr(content.size() - std::min<std::size_t>(content.size(), 64));
+        if (tail.find(kind == ".png"   ? "IEND"
+                      : kind == ".svg" ? "</svg>"
+                                       : "%%EOF") == std::string::npos)
+            throw Error(path.string() + ": the plot is incomplete", "check the free space");
         fs::rename(partial, path, failed);
         if (failed)
             throw Error(path.string() + ": cannot be written (" + failed.message() + ")",

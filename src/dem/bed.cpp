@@ -58,8 +58,8 @@ GridSize BedPlace::size() const {
     return {b.second.col - b.first.col + 1, b.second.row - b.first.row + 1};
 }
 
-std::vector<std::string> merge_bathymetry(Grid<float>& z, const BedPlace& place,
-                                          const Grid<float>& bathymetry, BathymetryKind kind) {
+Merged merge_bathymetry(Grid<float>& z, const BedPlace& place, const Grid<float>& bathymetry,
+                        BathymetryKind kind) {
     const Box box = place.widened();
     std::vector<float> inside;
     each_in(box, [&](Node n) {
@@ -69,7 +69,8 @@ std::vector<std::string> merge_bathymetry(Grid<float>& z, const BedPlace& place,
     if (inside.empty())
         throw Error("the bathymetry has no value inside the lake",
                     "check its CRS, its nodata value and that it shows this lake");
-    std::vector<std::string> notes;
+    Merged out;
+    std::vector<std::string>& notes = out.notes;
     if (kind == BathymetryKind::automatic) {
         kind = judge_kind(inside, place.surface_m);
         notes.push_back(std::string("bathymetry values taken as ") +
@@ -90,7 +91,7 @@ std::vector<std::string> merge_bathymetry(Grid<float>& z, const BedPlace& place,
         if (std::isnan(v))
             return;
         const float d = kind == BathymetryKind::elevation ? surface_m - v : negative ? -v : v;
-        above += d < 0.0f && place.surface(n);
+        above += d < -0.001f && place.surface(n);
         // Above the surveyed surface the DEM knows the ground; only the surface itself is replaced.
         if (d < 0.0f && !place.surface(n))
             return;
@@ -98,6 +99,16 @@ std::vector<std::string> merge_bathymetry(Grid<float>& z, const BedPlace& place,
         survey[within(box, n)] = 1;
         ++surveyed;
     });
+    std::size_t unknown = 0, told = 0; // of the nodes whose ground the DEM does not know
+    each_in(box, [&](Node n) {
+        unknown += place.surface(n);
+        told += place.surface(n) && survey[within(box, n)];
+    });
+    if (2 * above > inside.size())
+        throw Error(text("the bathymetry lies above the water's surface of ", fixed(surface_m, 2),
+                         " m in ", above, " of ", inside.size(), " nodes"),
+                    "check its unit (--bathymetry-unit), vertical datum (--bathymetry-offset) and "
+                    "kind (--bathymetry-kind)");
     // The shoreline holds the interpolation: depth 0 on dry nodes beside the lake.
     each_in(box, [&](Node n) {
         if (!place.surface(n))
@@ -117,8 +128,12 @@ std::vector<std::string> merge_bathymetry(Grid<float>& z, const BedPlace& place,
     notes.push_back(text("bathymetry covers ", surveyed, " of the lake's ", total,
                          " nodes; what lies between survey and shore is interpolated"));
     if (above > 0)
-        notes.push_back(text(above, " bathymetry values lay above the surface; taken as depth 0"));
-    return notes;
+        notes.push_back(text(above, " bathymetry values lay above the surface; taken as depth 0",
+                             20 * above > inside.size()
+                                 ? " (a datum that differs? --bathymetry-offset shifts it)"
+                                 : ""));
+    out.coverage = unknown == 0 ? 1.0 : double(told) / double(unknown);
+    return out;
 }
 
 Grid<float> grid_soundings(const BedPlace& place, std::span<const Sounding> soundings,

@@ -36,15 +36,19 @@ struct BedPlace {
     GridSize size() const; ///< of the widened box
 };
 
+struct Merged {
+    std::vector<std::string> notes; ///< how the values were read, how many nodes they changed
+    double coverage = 0.0;          ///< part of the nodes of unknown ground that the survey reached
+};
+
 /// Merges a bathymetry into the ground inside the lake.
 ///
 /// Nodes of the lake's surface that the survey does not cover (the rim between survey and shore,
 /// mostly) are interpolated between the survey and the shoreline, where the depth is 0: no cliff.
 /// @param survey  on the widened box, NaN where not surveyed; depths of either sign
-/// @return  sentences for the report: how the values were read, how many nodes they changed
-/// @throws tarn::Error  if no value lies inside the lake
-std::vector<std::string> merge_bathymetry(Grid<float>& elevation_m, const BedPlace& place,
-                                          const Grid<float>& survey, BathymetryKind kind);
+/// @throws tarn::Error  if no value lies inside the lake, or most lie above its surface
+Merged merge_bathymetry(Grid<float>& elevation_m, const BedPlace& place, const Grid<float>& survey,
+                        BathymetryKind kind);
 
 /// A place where the depth was measured, in scene metres from node (0, 0), in nodes.
 struct Sounding {

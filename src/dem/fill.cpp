@@ -37,6 +37,7 @@ Filled fill_from(const Grid<float>& z, const Marks& marks, float highest_wet_m,
             front.push_back(seed);
             ++out.nodes;
             out.at_level += z[seed] == highest_wet_m;
+            out.flat_at_level += z[seed] == highest_wet_m && (marks[seed] & mark::flat);
         }
     }
     search<8>(
@@ -51,6 +52,7 @@ Filled fill_from(const Grid<float>& z, const Marks& marks, float highest_wet_m,
             lake_of[n] = static_cast<std::uint16_t>(id);
             ++out.nodes;
             out.at_level += z[n] == highest_wet_m;
+            out.flat_at_level += z[n] == highest_wet_m && (marks[n] & mark::flat);
             return true;
         },
         [&](Node) { out.open_at_edge = true; });

@@ -34,7 +34,8 @@ struct Basin {
 
 struct Filled {
     std::size_t nodes = 0;
-    std::size_t at_level = 0; ///< of these, at the very height of `highest_wet_m`
+    std::size_t at_level = 0;      ///< of these, at the very height of `highest_wet_m`
+    std::size_t flat_at_level = 0; ///< of those, in a flat surface
     bool open_at_edge = false;
 };
 

@@ -41,6 +41,8 @@ public:
     void add_row(std::span<const float> heights);
     /// Surfaces that pass for water, largest first. Call once, after the last row.
     std::vector<FlatSurface> finish();
+    /// Whether heights come in steps, so that neighbours are equal by chance. After finish().
+    bool stepped() const { return stepped_; }
 
 private:
     struct Open : FlatSurface {
@@ -61,10 +63,10 @@ private:
     std::vector<Piece> pieces_above_, pieces_;
     std::vector<FlatSurface> kept_;
     std::size_t pairs_ = 0, chance_pairs_ = 0; ///< neighbours compared; equal ones outside water
-    bool any_ = false;
+    bool any_ = false, stepped_ = false;
 };
 
 /// The surfaces of a whole grid.
-std::vector<FlatSurface> find_flats(const Grid<float>& elevation_m);
+std::vector<FlatSurface> find_flats(const Grid<float>& elevation_m, bool* stepped = nullptr);
 
 } // namespace tarn::dem

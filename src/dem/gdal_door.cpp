@@ -56,7 +56,6 @@ void register_drivers() {
     static std::once_flag once;
     std::call_once(once, [] {
         GDALAllRegister();
-        CPLSetConfigOption("GDAL_PAM_ENABLED", "NO"); // leave no .aux.xml beside users' files
         // GDAL would keep a twentieth of all memory in blocks; streaming needs far less.
         if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr))
             GDALSetCacheMax64(GIntBig(64) << 20);

@@ -36,8 +36,9 @@ void ImportOptions::validate() const {
     range("--bathymetry-offset", bathymetry_offset_m, -12'000.0, 12'000.0);
     range("--bathymetry-level", bathymetry_level_m, -12'000.0, 12'000.0);
     range("--estimate-depth", estimate_depth_m, 0.01, 2000.0);
-    if (!unit.empty() && unit != "m" && unit != "ft" && unit != "us-ft")
-        throw Error("--unit '" + unit + "' is not known", "give m, ft or us-ft");
+    for (const std::string& asked : {unit, bathymetry_unit})
+        if (!asked.empty() && metres_per_unit(asked) == 0.0)
+            throw Error("unit '" + asked + "' is not known", "give m, ft, us-ft, cm, dm or mm");
     if (depths && !level_m)
         throw Error("--depths needs the level that they count from",
                     "give --level M (any, if it is not known)");
@@ -174,11 +175,16 @@ private:
         return {.elevation_m = mosaic_.elevation_m,
                 .marks = marks_,
                 .lake_of = lake_of_,
+                .stepped = stepped_,
                 .least_nodes = least_nodes()};
     }
     void fill_level(double level_m, std::optional<Node> seed);
     void fill_found(Node at);
     void tell_cut_short() {
+        constexpr std::size_t many = 40;
+        if (stepped_ && lakes_.size() > many)
+            note(text("heights come in steps, where level ground looks like water: some of the ",
+                      lakes_.size(), " surfaces may be none (--min-area leaves out small ones)"));
         if (lakes_.size() >= search().most_lakes)
             note(text("only the ", lakes_.size(),
                       " largest lakes were kept; --min-area leaves out the small ones"));
@@ -205,6 +211,7 @@ private:
     std::vector<double> flat_share_;
     std::vector<Bed> beds_;
     Boxes boxes_;
+    bool stepped_ = false; ///< the data's heights come in steps
 };
 
 void Work::add_input(Source& source, const std::string& role) {
@@ -268,14 +275,26 @@ void Work::build_grid() {
 
 void Work::find_surfaces() {
     progress_.report(0.61, "finding water surfaces");
-    auto flats = find_flats(mosaic_.elevation_m); // voids are still voids here
+    bool stepped = false;
+    auto flats = find_flats(mosaic_.elevation_m, &stepped); // voids are still voids here
+    stepped_ = stepped || mosaic_.stepped;
+    if (!mosaic_.laid.values.empty()) // what the source did not take for water is none here
+        std::erase_if(flats, [&](const FlatSurface& flat) {
+            std::size_t laid = 0;
+            for (const Run& run : flat.runs)
+                for (int col = run.first; col <= run.last; ++col)
+                    laid += mosaic_.laid[{col, run.row}];
+            return 2 * laid < flat.nodes;
+        });
+    mosaic_.laid = {};
     progress_.report(0.64, "filling voids");
     marks_ = Marks(mosaic_.elevation_m.size);
     const VoidCount voids = fill_voids(mosaic_.elevation_m, marks_);
     report_.void_nodes = voids.all;
     report_.filled_nodes = voids.inside;
     report_.outside_nodes = voids.all - voids.inside;
-    surfaces_ = complete_surfaces(mosaic_.elevation_m, marks_, std::move(flats), report_.notes);
+    surfaces_ =
+        complete_surfaces(mosaic_.elevation_m, marks_, std::move(flats), stepped_, report_.notes);
     std::size_t flat = 0;
     for (const unsigned char m : marks_.values)
         flat += (m & mark::flat) != 0;
@@ -303,7 +322,12 @@ void Work::fill_level(double level_m, std::optional<Node> seed) {
             largest_basin_seed(mosaic_, marks_, level_m, highest, options_.depths, report_.notes);
     }
     FoundLake lake{.id = 1, .level_m = level_m, .seeds = {*seed}};
-    const Filled filled = fill_from(mosaic_.elevation_m, marks_, highest, lake.seeds, 1, lake_of_);
+    Filled filled = fill_from(mosaic_.elevation_m, marks_, highest, lake.seeds, 1, lake_of_);
+    const float below = highest_wet(level_m, false);
+    if (highest != below && filled.flat_at_level == 0 && mosaic_.elevation_m[*seed] <= below) {
+        drain(lake_of_, lake.seeds); // a surface of just this height, but of another lake
+        filled = fill_from(mosaic_.elevation_m, marks_, below, lake.seeds, 1, lake_of_);
+    }
     lake.nodes = filled.nodes;
     lake.open_at_edge = filled.open_at_edge && !options_.depths;
     lakes_.push_back(lake);
@@ -366,8 +390,10 @@ void Work::choose_and_fill() {
                     "it may hold the lake's bed: give the level with --level M");
     const bool chosen = options_.level_m || options_.at;
     if (!chosen) { // the largest inland one comes first
-        const auto main = std::find_if(lakes_.begin(), lakes_.end(),
-                                       [](const FoundLake& lake) { return !lake.sea; });
+        const auto main = std::max_element(lakes_.begin(), lakes_.end(),
+                                           [](const FoundLake& a, const FoundLake& b) {
+                                               return a.sea != b.sea ? a.sea : a.nodes < b.nodes;
+                                           });
         if (main != lakes_.end())
             std::rotate(lakes_.begin(), main, main + 1);
         if (options_.lakes == LakeChoice::one) {
@@ -516,9 +542,10 @@ void Work::make_bed(const FoundLake& lake, std::size_t& made) {
     if (std::abs(place.surface_m - lake.level_m) > 0.05)
         note(text("depths count from ", fixed(place.surface_m, 2), " m",
                   options_.bathymetry_level_m ? "" : ", the DEM's own water surface"));
-    const auto notes = merge_bathymetry(mosaic_.elevation_m, place, survey, kind);
-    report_.notes.insert(report_.notes.end(), notes.begin(), notes.end());
-    beds_[k] = options_.bathymetry ? Bed::measured : Bed::interpolated;
+    const Merged merged = merge_bathymetry(mosaic_.elevation_m, place, survey, kind);
+    report_.notes.insert(report_.notes.end(), merged.notes.begin(), merged.notes.end());
+    // Half a survey is no measured bed.
+    beds_[k] = options_.bathymetry && merged.coverage >= 0.8 ? Bed::measured : Bed::interpolated;
     ++made;
 }
 
@@ -528,15 +555,18 @@ void Work::open_surveys() {
             *options_.bathymetry,
             {.crs = options_.bathymetry_crs,
              .nodata = std::numeric_limits<double>::quiet_NaN(), // 0 is a depth, no collar
-             .unit = {},
+             .unit = options_.bathymetry_unit,
              .depths_below_m = {},
              .crs_hint = "give it with --bathymetry-crs EPSG:..."});
         for (Source& part : surveys_)
             add_input(part, "bathymetry");
         return;
     }
-    soundings_ =
-        read_soundings(*options_.soundings, options_.depth_field, options_.bathymetry_crs, mosaic_);
+    soundings_ = read_soundings(*options_.soundings,
+                                {.field = options_.depth_field,
+                                 .crs = options_.bathymetry_crs,
+                                 .unit = options_.bathymetry_unit},
+                                mosaic_);
     report_.inputs.push_back(soundings_.input);
     checksums_.add(options_.soundings->string());
     report_.notes.insert(report_.notes.end(), soundings_.notes.begin(), soundings_.notes.end());
@@ -705,7 +735,10 @@ ImportResult Work::pack(std::vector<LakeRecord> lakes, const HeightsSink& keep_h
     if (options_.ortho) {
         Source picture = open_picture(*options_.ortho, "");
         add_input(picture, "ortho");
+        const std::size_t known = picture.notes.size();
         out.ortho = warp_ortho(picture, out.frame, out.ground, progress_);
+        for (std::size_t i = known; i < picture.notes.size(); ++i)
+            note(picture.notes[i]);
     }
     return out;
 }

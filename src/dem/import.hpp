@@ -42,6 +42,7 @@ struct ImportOptions {
     std::string bathymetry_crs;               ///< replaces the bathymetry's (or soundings') own
     double bathymetry_offset_m = 0.0;         ///< added to its elevations: difference of the datums
     std::optional<double> bathymetry_level_m; ///< level that its depths count from
+    std::string bathymetry_unit;              ///< "m", "ft", ... replaces the bathymetry's own
     std::string depth_field;                  ///< of the soundings; "" looks for one
     std::optional<double> estimate_depth_m;   ///< greatest depth of an estimated bed, (0, 2000]
     BedChoice bed = BedChoice::automatic;

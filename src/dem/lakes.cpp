@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace tarn::dem {
 
@@ -13,7 +14,8 @@ namespace {
 
 // What lies this much below a surface that runs out is the valley below its dam, not its bed.
 constexpr double dam_m = 1.0;
-constexpr int bay_reach = 6; // nodes between a lake and a patch of its level that is its bay
+constexpr float seam_m = 0.5f; // parts of one lake's surface differ by no more
+constexpr int bay_reach = 6;   // nodes between a lake and a patch of its level that is its bay
 
 std::vector<Run> runs_of(std::vector<Node> nodes) {
     std::sort(nodes.begin(), nodes.end(),
@@ -114,18 +116,8 @@ void void_water(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces
 /// slope by centimetres. Nodes whose neighbourhood is level within `even_m` are gathered.
 void ramps(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
            std::vector<std::string>& notes) {
-    constexpr float even_m = 0.03f, seam_m = 0.5f;
+    constexpr float even_m = 0.06f;
     constexpr std::size_t least = 64;
-    // Whole metres or other steps: exact equality says all there is.
-    std::size_t equal = 0, pairs = 0;
-    for (int row = 0; row < z.size.rows; row += 7)
-        for (int col = 0; col + 1 < z.size.cols; ++col)
-            if (!(marks[{col, row}] & (mark::flat | mark::filled | mark::outside))) {
-                ++pairs;
-                equal += z[{col, row}] == z[{col + 1, row}];
-            }
-    if (pairs == 0 || double(equal) > 0.02 * double(pairs))
-        return;
     const auto even = [&](Node n) {
         if (marks[n] & (mark::flat | mark::filled | mark::outside))
             return false;
@@ -139,16 +131,28 @@ void ramps(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
         return inside && high - low <= even_m;
     };
     // What makes it water rather than level ground (the flat bottom of a lake's own bed, say): it
-    // goes on from a flat surface, or the land breaks up from it at the shore.
+    // goes on from a flat surface, or the land breaks up from it at the shore. Looked at three
+    // nodes away from all of it: the nearer ones are its own shore.
+    const auto near_piece = [&](Node m) {
+        for (int dr = -2; dr <= 2; ++dr)
+            for (int dc = -2; dc <= 2; ++dc) {
+                const Node n{m.col + dc, m.row + dr};
+                if (z.contains(n) && (marks[n] & mark::seen))
+                    return true;
+            }
+        return false;
+    };
     const auto around = [&](const std::vector<Node>& nodes, auto visit) {
-        for (const Node n : nodes)
-            for (int dr = -3; dr <= 3; ++dr)
-                for (int dc = -3; dc <= 3; ++dc) {
-                    const Node m{n.col + dc, n.row + dr};
-                    if (std::max(std::abs(dr), std::abs(dc)) == 3 && z.contains(m) &&
-                        !(marks[m] & mark::seen))
-                        visit(m);
-                }
+        for (const Node n : nodes) {
+            bool rim = false;
+            each_neighbour(z.size, n, [&](Node m) { rim |= !(marks[m] & mark::seen); });
+            for (int k = 0; rim && k < 49; ++k) {
+                const Node m{n.col + k % 7 - 3, n.row + k / 7 - 3};
+                if (std::max(std::abs(m.col - n.col), std::abs(m.row - n.row)) == 3 &&
+                    z.contains(m) && !near_piece(m))
+                    visit(m);
+            }
+        }
     };
     const auto beside_flat = [&](const std::vector<Node>& nodes) {
         bool found = false;
@@ -191,9 +195,10 @@ void ramps(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
             for (const Node n : nodes)
                 heights.push_back(z[n]);
             const float level = median(heights);
-            std::size_t lower = 0, higher = 0, off = 0;
+            std::size_t lower = 0, higher = 0, off = 0, uneven = 0;
             for (const Node n : nodes) {
                 off += std::abs(z[n] - level) > seam_m;
+                uneven += std::abs(z[n] - level) > 2.0f * even_m;
                 each_neighbour(z.size, n, [&](Node m) {
                     if (marks[m] & mark::seen)
                         return;
@@ -201,8 +206,18 @@ void ramps(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
                     higher += z[m] > level + even_m;
                 });
             }
+            // Its shore's own nodes belong to it too: they are even with the nodes inside.
+            const std::size_t inner = nodes.size();
+            for (std::size_t i = 0; i < inner; ++i)
+                each_neighbour(z.size, nodes[i], [&](Node m) {
+                    if (!(marks[m] & (mark::seen | mark::flat | mark::filled | mark::outside)) &&
+                        std::abs(z[m] - level) <= even_m) {
+                        marks[m] |= mark::seen;
+                        nodes.push_back(m);
+                    }
+                });
             if (off == 0 && 4 * lower <= lower + higher &&
-                (beside_flat(nodes) || shore(nodes, level)))
+                (beside_flat(nodes) || (20 * uneven <= nodes.size() && shore(nodes, level))))
                 found.push_back(surface_of(nodes, level));
         }
     clear(marks, mark::seen);
@@ -242,6 +257,55 @@ void ramps(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
                              " m"));
 }
 
+/// Lakes flattened tile by tile step at the seam between two exactly flat parts: the smaller part
+/// takes the larger one's height.
+void seams(Grid<float>& z, std::vector<FlatSurface>& surfaces, const Marks& marks,
+           std::vector<std::string>& notes) {
+    constexpr std::size_t least_contact = 8;
+    std::size_t parts = 0, nodes_all = 0;
+    float most = 0.0f;
+    for (std::size_t i = surfaces.size(); i-- > 0;) { // the smallest first
+        FlatSurface& surface = surfaces[i];
+        std::map<float, std::size_t> contact;
+        each_node(surface, [&](Node n) {
+            for (const Node m : {Node{n.col - 1, n.row}, Node{n.col + 1, n.row},
+                                 Node{n.col, n.row - 1}, Node{n.col, n.row + 1}})
+                if (z.contains(m) && z[m] != surface.level_m && (marks[m] & mark::flat) &&
+                    std::abs(z[m] - surface.level_m) <= seam_m)
+                    ++contact[z[m]];
+        });
+        const auto best =
+            std::max_element(contact.begin(), contact.end(),
+                             [](const auto& a, const auto& b) { return a.second < b.second; });
+        if (best == contact.end() || best->second < least_contact ||
+            std::none_of(surfaces.begin(), surfaces.begin() + std::ptrdiff_t(i),
+                         [&](const FlatSurface& s) { return s.level_m == best->first; }))
+            continue;
+        most = std::max(most, std::abs(best->first - surface.level_m));
+        nodes_all += surface.nodes;
+        ++parts;
+        surface.level_m = best->first;
+        each_node(surface, [&](Node n) { z[n] = surface.level_m; });
+    }
+    if (parts > 0)
+        notes.push_back(text(parts,
+                             parts == 1 ? " flat surface that steps" : " flat surfaces that step",
+                             " at a seam against a larger one (", nodes_all,
+                             " nodes) took its height, ", fixed(most, 2), " m away at most"));
+}
+
+/// Do heights come in steps (whole metres, feet, decimetres)? Then neighbours are equal by chance.
+bool comes_in_steps(const Grid<float>& z, const Marks& marks) {
+    std::size_t equal = 0, pairs = 0;
+    for (int row = 0; row < z.size.rows; row += 7)
+        for (int col = 0; col + 1 < z.size.cols; ++col)
+            if (!(marks[{col, row}] & (mark::flat | mark::filled | mark::outside))) {
+                ++pairs;
+                equal += z[{col, row}] == z[{col + 1, row}];
+            }
+    return pairs == 0 || double(equal) > 0.02 * double(pairs);
+}
+
 bool near_lake(const LakeOf& lake_of, const FlatSurface& surface, int id) {
     for (const Run& run : surface.runs)
         for (int row = std::max(run.row - bay_reach, 0);
@@ -256,12 +320,17 @@ bool near_lake(const LakeOf& lake_of, const FlatSurface& surface, int id) {
 } // namespace
 
 std::vector<FlatSurface> complete_surfaces(Grid<float>& z, Marks& marks,
-                                           std::vector<FlatSurface> surfaces,
+                                           std::vector<FlatSurface> surfaces, bool stepped,
                                            std::vector<std::string>& notes) {
     for (const FlatSurface& surface : surfaces)
         each_node(surface, [&](Node n) { marks[n] |= mark::flat; });
     void_water(z, marks, surfaces, notes);
-    ramps(z, marks, surfaces, notes);
+    std::stable_sort(surfaces.begin(), surfaces.end(),
+                     [](const FlatSurface& a, const FlatSurface& b) { return a.nodes > b.nodes; });
+    if (!stepped && !comes_in_steps(z, marks)) { // in steps exact equality says all there is
+        seams(z, surfaces, marks, notes);
+        ramps(z, marks, surfaces, notes);
+    }
     std::stable_sort(surfaces.begin(), surfaces.end(),
                      [](const FlatSurface& a, const FlatSurface& b) { return a.nodes > b.nodes; });
     return surfaces;
@@ -299,7 +368,9 @@ FoundLake fill_surface(const LakeSearch& s, const FlatSurface& surface, int id) 
     lake.open_at_edge = filled.open_at_edge;
     // Mostly surface: the lake ends where the flat ends. Else the surface is only the rim of a lake
     // whose bed the data hold and cut, or a terrace on a slope and no lake at all.
-    if (runs_out && 2 * surface.nodes < filled.at_level) {
+    // In steps no bed is so flat at its rim that a surface there means a lake: it is a terrace.
+    if ((runs_out && 2 * surface.nodes < filled.at_level) ||
+        (s.stepped && 2 * filled.at_level < filled.nodes)) {
         drain(s.lake_of, lake.seeds);
         lake.nodes = 0;
     }

@@ -26,15 +26,18 @@ struct LakeSearch {
                               ///< flat in it
     Marks& marks;             ///< mark::flat is set on all surfaces
     LakeOf& lake_of;
+    bool stepped = false;            ///< heights come in steps: whole metres, feet, decimetres
     std::size_t least_nodes = 20;    ///< smaller lakes are dropped
     std::size_t most_lakes = 60'000; ///< ids have 16 bits
 };
 
 /// Adds, to the exactly flat surfaces, those that are flat but for some centimetres, and voids that
-/// water made (an even rim): lays them flat and marks them. Call once, before filling.
+/// water made (an even rim); joins surfaces that step by up to half a metre at a seam: lays them
+/// flat and marks them. Call once, before filling.
+/// @param stepped  the sources' heights come in steps: then only voids are added
 /// @return all surfaces, largest first; sentences for the report go to `notes`
 std::vector<FlatSurface> complete_surfaces(Grid<float>& elevation_m, Marks& marks,
-                                           std::vector<FlatSurface> flats,
+                                           std::vector<FlatSurface> flats, bool stepped,
                                            std::vector<std::string>& notes);
 
 /// Fills one lake from surfaces of one level. If its water would run out of the data over ground

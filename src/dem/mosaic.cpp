@@ -294,7 +294,8 @@ private:
 
 /// Searches the part of a source that the scene uses, a few rows at a time.
 /// @param voids  set if a node without data was met
-FlatRows find_source_flats(GDALDataset& ds, int c0, int r0, int c1, int r1, bool& voids) {
+FlatRows find_source_flats(GDALDataset& ds, int c0, int r0, int c1, int r1, bool& voids,
+                           bool& stepped) {
     FlatFinder finder(c1 - c0);
     constexpr int strip = 64;
     for (int row = r0; row < r1; row += strip) {
@@ -307,7 +308,9 @@ FlatRows find_source_flats(GDALDataset& ds, int c0, int r0, int c1, int r1, bool
             finder.add_row(
                 std::span(part.values).subspan(part.index({0, r}), std::size_t(part.size.cols)));
     }
-    return {finder.finish(), c0, r0, r1 - r0};
+    FlatRows out(finder.finish(), c0, r0, r1 - r0);
+    stepped |= finder.stepped();
+    return out;
 }
 
 /// Between the target's pixels and a source's, as gdalwarp goes.
@@ -385,7 +388,7 @@ constexpr int block_side = 64; // nodes; the unit in which places without water 
 class FlatLayer {
 public:
     FlatLayer(GDALDataset& source, const OGRSpatialReference& crs, const Target& target,
-              bool& voids)
+              bool& voids, bool& stepped)
         : source_(source) {
         source.GetGeoTransform(transform_.v);
         map_ = std::make_unique<PixelMap>(crs, transform_.v, target);
@@ -407,7 +410,7 @@ public:
             r1 = std::min(r1, pixel(std::ceil(std::max(ra, rb))) + 2);
         }
         if (c0 < c1 && r0 < r1)
-            flats_ = find_source_flats(source, c0, r0, c1, r1, voids);
+            flats_ = find_source_flats(source, c0, r0, c1, r1, voids, stepped);
         find_blocks(target);
     }
 
@@ -608,12 +611,12 @@ void keep_areas(FlatLayer& layer, const Target& target) {
 /// Finds the water surfaces of all sources, and whether these have voids.
 std::vector<std::unique_ptr<FlatLayer>>
 find_layers(const Target& target, const std::vector<GDALDataset*>& inputs,
-            const std::vector<const OGRSpatialReference*>& crs, bool& voids,
+            const std::vector<const OGRSpatialReference*>& crs, bool& voids, bool& stepped,
             const Progress& progress) {
     std::vector<std::unique_ptr<FlatLayer>> layers;
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         progress.report(0.02 + 0.13 * double(i) / double(inputs.size()), "finding flat water");
-        layers.push_back(std::make_unique<FlatLayer>(*inputs[i], *crs[i], target, voids));
+        layers.push_back(std::make_unique<FlatLayer>(*inputs[i], *crs[i], target, voids, stepped));
         keep_areas(*layers.back(), target);
     }
     return layers;
@@ -623,9 +626,10 @@ find_layers(const Target& target, const std::vector<GDALDataset*>& inputs,
 /// them that a cubic pulled below their level, although bilinear interpolation keeps it above, is
 /// lifted: no puddles along the shore. Land that is really lower (a polder, the river below a dam)
 /// is lower in both.
-void keep_flats(Grid<float>& z, const Target& target,
-                const std::vector<std::unique_ptr<FlatLayer>>& layers, bool cubic,
-                const Progress& progress) {
+/// @return 1 where a surface was laid
+Grid<std::uint8_t> keep_flats(Grid<float>& z, const Target& target,
+                              const std::vector<std::unique_ptr<FlatLayer>>& layers, bool cubic,
+                              const Progress& progress) {
     progress.report(0.5, "keeping lakes flat");
     const int block_cols = (target.size.cols + block_side - 1) / block_side;
     const int block_rows = (target.size.rows + block_side - 1) / block_side;
@@ -671,8 +675,13 @@ void keep_flats(Grid<float>& z, const Target& target,
                 }
         });
     });
+    const auto only_water = [&] {
+        for (std::uint8_t& k : kind.values)
+            k = k == water;
+        return std::move(kind);
+    };
     if (!cubic)
-        return;
+        return only_water();
     constexpr float puddle_m = 0.01f; // pits shallower than this beside a lake are noise
     const auto lift = [&](Node n, float level) {
         kind[n] = tried;
@@ -710,6 +719,7 @@ void keep_flats(Grid<float>& z, const Target& target,
             }
         });
     });
+    return only_water();
 }
 
 /// The box of all sources [deg]. Tiles on both sides of the 180th meridian are brought side by
@@ -854,7 +864,7 @@ Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
     for (const auto& group : groups)
         crs.push_back(&group.front()->crs);
     bool voids = false;
-    const auto layers = find_layers(target, inputs, crs, voids, progress);
+    const auto layers = find_layers(target, inputs, crs, voids, out.stepped, progress);
     for (std::size_t i = 0; i < groups.size(); ++i)
         for (GDALDataset* input : {inputs[i], groups[i].front()->raster.get()})
             declare_voids(*input, voids);
@@ -866,7 +876,7 @@ Mosaic warp_to_local(std::vector<Source>& sources, const MosaicOptions& options,
                                  " grids out of phase with each other were resampled "
                                  "onto one; where they overlap the last one counts"));
 
-    keep_flats(out.elevation_m, target, layers, !coarser, progress);
+    out.laid = keep_flats(out.elevation_m, target, layers, !coarser, progress);
     return out;
 }
 

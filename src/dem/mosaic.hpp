@@ -11,6 +11,7 @@
 #include "dem/source.hpp"
 #include "geo/frame_data.hpp"
 
+#include <cstdint>
 #include <optional>
 
 namespace tarn::dem {
@@ -23,6 +24,8 @@ struct Mosaic {
     double west_m = 0.0, north_m = 0.0; ///< scene position of node (0, 0)
     std::string resampling = "none";
     std::vector<std::string> notes;
+    bool stepped = false;    ///< a warped source's heights come in steps (whole metres, ...)
+    Grid<std::uint8_t> laid; ///< 1 where a warped source's water surface was laid; empty if kept
 };
 
 /// Region of interest on WGS 84 [deg].

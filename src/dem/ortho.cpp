@@ -54,13 +54,59 @@ std::pair<double, double> colour_range(GDALDataset& picture, int colours) {
     return {low, std::max(high, low + 1e-9)};
 }
 
+/// The bands that are red, green, blue (and alpha), if they are not simply the first ones.
+std::vector<int> band_order(GDALDataset& picture) {
+    int red = 0, green = 0, blue = 0, alpha = 0;
+    const int bands = picture.GetRasterCount();
+    for (int b = 1; b <= bands; ++b)
+        switch (picture.GetRasterBand(b)->GetColorInterpretation()) {
+        case GCI_RedBand:
+            red = b;
+            break;
+        case GCI_GreenBand:
+            green = b;
+            break;
+        case GCI_BlueBand:
+            blue = b;
+            break;
+        case GCI_AlphaBand:
+            alpha = b;
+            break;
+        default:
+            break;
+        }
+    std::vector<int> out;
+    if (red && green && blue)
+        out = {red, green, blue};
+    else if (bands > 4)
+        out = {1, 2, 3};
+    else
+        return {};
+    if (alpha)
+        out.push_back(alpha);
+    const bool plain = out[0] == 1 && out[1] == 2 && out[2] == 3 && int(out.size()) == bands;
+    return plain ? std::vector<int>{} : out;
+}
+
 } // namespace
 
 Ortho warp_ortho(Source& source, const geo::Frame& frame, const Heightfield& ground,
                  const Progress& progress) {
     GdalMessages messages;
-    Dataset view;
+    Dataset picked, view;
     GDALDataset* input = source.original.get();
+    if (const auto order = band_order(*input); !order.empty()) {
+        Arguments pick{"-of", "VRT"};
+        for (const int band : order) {
+            pick.add("-b");
+            pick.add(text(band));
+        }
+        picked = translate(*input, pick, source.name);
+        input = picked.get();
+        source.notes.push_back(text(source.name, ": has ", source.original->GetRasterCount(),
+                                    " bands; ", order[0], ", ", order[1], ", ", order[2],
+                                    " are taken as red, green, blue"));
+    }
     GDALRasterBand& first = *input->GetRasterBand(1);
     if (first.GetColorInterpretation() == GCI_PaletteIndex) {
         Arguments expand{"-of", "VRT", "-expand", "rgba"};

@@ -243,7 +243,12 @@ private:
         const int width = size.first, height = size.second;
         const GDALDataType type = band.GetRasterDataType();
         const int cols = remote.GetRasterXSize(), rows = remote.GetRasterYSize();
-        fs::create_directories(local_.parent_path());
+        std::error_code unmade;
+        fs::create_directories(local_.parent_path(), unmade);
+        if (unmade)
+            throw Error(local_.parent_path().string() + ": cannot be made (" + unmade.message() +
+                            ")",
+                        "name another folder with --cache");
         const fs::path partial = local_.string() + text(".partial-", ::getpid());
         CPLStringList options;
         if (width % 16 == 0 && height % 16 == 0) {

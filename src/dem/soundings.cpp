@@ -106,8 +106,9 @@ void collect(const OGRGeometry& shape, double value, double step, std::vector<Re
 
 } // namespace
 
-SoundingFile read_soundings(const std::filesystem::path& path, const std::string& field,
-                            const std::string& crs, const Mosaic& mosaic) {
+SoundingFile read_soundings(const std::filesystem::path& path, const SoundingOptions& asked,
+                            const Mosaic& mosaic) {
+    const std::string &field = asked.field, &crs = asked.crs;
     register_drivers();
     SoundingFile out;
     const std::string name = path.filename().string();
@@ -171,8 +172,28 @@ SoundingFile read_soundings(const std::filesystem::path& path, const std::string
                          " features has a position and a depth (fields: ", field_names(layout),
                          ")"),
                     csv ? "the first line must name the columns, as in lon,lat,depth; "
-                          "--depth-field names the depth"
+                          "numbers have decimal points; --depth-field names the depth"
                         : "name the attribute with --depth-field");
+    // What writers put where there is no depth.
+    const auto placeholder = [](const Reading& r) {
+        return r.value == -9999.0 || r.value == -32768.0 || r.value == 9999.0 ||
+               !(std::abs(r.value) < 12'000.0);
+    };
+    if (const auto gone = std::erase_if(readings, placeholder); gone > 0)
+        out.notes.push_back(
+            text(name, ": ", gone, " values like -9999 or beyond 12 km taken as none"));
+    if (readings.empty())
+        throw Error(name + ": holds no depth that can be one", "check its unit and --depth-field");
+    std::string unit = asked.unit;
+    const std::string said =
+        depth_field >= 0 ? lower(layout.GetFieldDefn(depth_field)->GetNameRef()) : "";
+    if (unit.empty() && (said.ends_with("_ft") || said.ends_with("_feet"))) {
+        unit = "ft";
+        out.notes.push_back(name + ": field '" + said + "' taken as feet (--bathymetry-unit)");
+    }
+    if (const double factor = metres_per_unit(unit); factor != 1.0)
+        for (Reading& r : readings)
+            r.value *= factor;
     if (without > 0)
         out.notes.push_back(text(name, ": ", without, " of ", features,
                                  " features have no position or no number for the depth"));

@@ -33,6 +33,23 @@ std::string describe(const OGRSpatialReference& crs) {
     return out;
 }
 
+double metres_per_unit(const std::string& unit) {
+    if (unit.empty() || unit == "m" || unit == "metre" || unit == "meter" || unit == "metres" ||
+        unit == "meters")
+        return 1.0;
+    if (unit == "ft" || unit == "foot" || unit == "feet" || unit == "international foot")
+        return 0.3048;
+    if (unit == "US survey foot" || unit == "us-ft" || unit == "ftUS" || unit == "sft")
+        return 1200.0 / 3937.0;
+    if (unit == "dm" || unit == "decimetre")
+        return 0.1;
+    if (unit == "cm" || unit == "centimetre")
+        return 0.01;
+    if (unit == "mm" || unit == "millimetre")
+        return 0.001;
+    return 0.0;
+}
+
 namespace {
 
 /// The rasters inside a zip archive, as GDAL paths; the file itself if it is no archive.
@@ -142,24 +159,6 @@ Source open_one(const std::string& path, const std::string& crs, const std::stri
     source.input.size = text(source.cols, " x ", source.rows);
     source.path = path;
     return source;
-}
-
-/// Metres per unit of height, from what the band or the CRS says; 0 if the name is not known.
-double metres_per_unit(const std::string& unit) {
-    if (unit.empty() || unit == "m" || unit == "metre" || unit == "meter" || unit == "metres" ||
-        unit == "meters")
-        return 1.0;
-    if (unit == "ft" || unit == "foot" || unit == "feet" || unit == "international foot")
-        return 0.3048;
-    if (unit == "US survey foot" || unit == "us-ft" || unit == "ftUS" || unit == "sft")
-        return 1200.0 / 3937.0;
-    if (unit == "dm" || unit == "decimetre")
-        return 0.1;
-    if (unit == "cm" || unit == "centimetre")
-        return 0.01;
-    if (unit == "mm" || unit == "millimetre")
-        return 0.001;
-    return 0.0;
 }
 
 double height_factor(Source& source, const std::string& asked) {

@@ -49,6 +49,9 @@ std::vector<Source> open_sources(const std::filesystem::path& path, const Source
 /// As above for pictures (orthophotos): the dataset as it is, CRS checked.
 Source open_picture(const std::filesystem::path& path, const std::string& crs);
 
+/// Metres per unit of height by the unit's name in files and options; 0 if it is not known.
+double metres_per_unit(const std::string& unit);
+
 /// "EPSG:..." or the name a CRS carries.
 std::string describe(const OGRSpatialReference& crs);
 

@@ -4,7 +4,6 @@
 #include "core/text.hpp"
 #include "dem/fill.hpp"
 #include "dem/flat.hpp"
-#include "dem/lakes.hpp"
 #include "dem/statistics.hpp"
 #include "geo/frame.hpp"
 
@@ -166,7 +165,11 @@ StageTable stage_table(const Grid<float>& z, const Heightfield& ground, const He
     const auto flats = find_flats(z);
     std::vector<float> wet_to;
     for (const std::size_t i : order)
-        wet_to.push_back(highest_wet(levels_m[i], has_surface(flats, levels_m[i])));
+        wet_to.push_back(highest_wet(
+            levels_m[i], std::any_of(flats.begin(), flats.end(), [&](const FlatSurface& flat) {
+                const auto level = static_cast<float>(levels_m[i]); // a surface that it reaches
+                return flat.level_m == level && wets[flat.middle] <= level;
+            })));
     std::vector<Class> classes(order.size());
     const double reference = lake.level_m;
     constexpr int block = 32; // the scale factor varies over kilometres

@@ -17,6 +17,7 @@ Dataset create(const std::filesystem::path& path, GridSize size, int bands, GDAL
                const GeoTransform& transform, const std::string& crs, bool alpha,
                const GdalMessages& messages) {
     register_drivers();
+    CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", "NO"); // no .aux.xml beside it; see finish()
     auto* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
     CPLStringList options;
     options.SetNameValue("COMPRESS", "DEFLATE");
@@ -47,6 +48,7 @@ void finish(Dataset out, const std::filesystem::path& path, CPLErr written,
     // Errors of a full disk show only when the last block goes out.
     out->FlushCache(true);
     out.reset();
+    CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", nullptr); // .aux.xml are read where they are
     if (written != CE_None || messages.failed())
         throw Error(path.string() + ": cannot be written (" + messages.last() + ")",
                     "check the free space and permissions");

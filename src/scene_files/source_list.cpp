@@ -3,6 +3,8 @@
 #include "core/error.hpp"
 #include "core/text.hpp"
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -21,6 +23,13 @@ std::vector<RemoteSource> read_sources(const std::filesystem::path& path) {
             throw Error(path.string() + ": 'sources' must be a list", hint);
         for (std::size_t i = 0; i < list.size(); ++i) {
             const auto& entry = list[i];
+            static const std::array known = {"name",           "url",  "tile_deg", "named_by_north",
+                                             "missing_status", "about"};
+            for (const auto& [key, value] : entry.items())
+                if (std::find(known.begin(), known.end(), key) == known.end())
+                    throw Error(text(path.string(), ": sources[", i, "] has '", key,
+                                     "', which is no field"),
+                                hint);
             RemoteSource source;
             source.name = entry.at("name").get<std::string>();
             source.url = entry.at("url").get<std::string>();
@@ -36,6 +45,10 @@ std::vector<RemoteSource> read_sources(const std::filesystem::path& path) {
             if (!source.url.starts_with("http://") && !source.url.starts_with("https://"))
                 throw Error(text(path.string(), ": sources[", i, "].url is '", source.url,
                                  "', must begin with http:// or https://"),
+                            hint);
+            if (source.url.find("{lat}") == std::string::npos ||
+                source.url.find("{lon}") == std::string::npos)
+                throw Error(text(path.string(), ": sources[", i, "].url has no {lat} or no {lon}"),
                             hint);
             out.push_back(source);
         }

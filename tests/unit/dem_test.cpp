@@ -238,7 +238,9 @@ TEST(Flat, RowByRowFindsWhatAWholeSearchFinds) {
                     interior += equal == 8;
                 }
                 if (members.size() >= 20 && interior >= 4)
-                    (20 * lower <= 7 * (lower + higher) ? expected : terraces)
+                    (20 * lower <= 7 * (lower + higher) && 10 * interior >= members.size()
+                         ? expected
+                         : terraces)
                         .emplace_back(z[Node(c, r)], members.size(), interior);
             }
         std::vector<std::tuple<float, std::size_t, std::size_t>> got;
@@ -276,7 +278,7 @@ TEST(Lakes, VoidsWithAnEvenRimAreWaterAndRadarShadowIsNot) {
     Marks marks(z.size);
     fill_voids(z, marks);
     std::vector<std::string> notes;
-    const auto surfaces = complete_surfaces(z, marks, {}, notes);
+    const auto surfaces = complete_surfaces(z, marks, {}, false, notes);
     ASSERT_EQ(surfaces.size(), 1u);
     EXPECT_EQ(surfaces[0].nodes, 100u);
     EXPECT_NEAR(surfaces[0].level_m, 250.1, 0.001);
@@ -294,7 +296,7 @@ TEST(Lakes, CentimetreRampsAndSeamsMakeOneLake) {
     Marks marks(z.size);
     LakeOf lakes(z.size);
     std::vector<std::string> notes;
-    const auto surfaces = complete_surfaces(z, marks, find_flats(z), notes);
+    const auto surfaces = complete_surfaces(z, marks, find_flats(z), false, notes);
     const auto found =
         find_lakes({.elevation_m = z, .marks = marks, .lake_of = lakes}, surfaces, 1);
     ASSERT_EQ(found.size(), 1u);
@@ -302,6 +304,43 @@ TEST(Lakes, CentimetreRampsAndSeamsMakeOneLake) {
     // All of it but the seam's and the shore's own rows.
     EXPECT_GT(found[0].nodes, 24u * 44u - 2 * 24u - 2 * 22u);
     EXPECT_LE(found[0].nodes, 24u * 44u);
+}
+
+TEST(Lakes, NoisyWaterOfAnyShapeAndSeamsBetweenFlatsAreOneLake) {
+    // A laser lake with millimetres of noise: a circle, so that no shore runs along the grid.
+    std::mt19937 random(5);
+    std::normal_distribution<float> noise(0.0f, 0.004f);
+    Grid<float> z({160, 160});
+    std::size_t truth = 0;
+    for (int r = 0; r < 160; ++r)
+        for (int c = 0; c < 160; ++c) {
+            const double d = std::hypot(c - 80, r - 80);
+            truth += d < 50;
+            z[{c, r}] =
+                d < 50 ? 100.0f + noise(random) : float(100.4 + 0.2 * (d - 50)) + noise(random);
+        }
+    const auto search = [&](Grid<float>& grid) {
+        Marks marks(grid.size);
+        LakeOf lakes(grid.size);
+        std::vector<std::string> notes;
+        const auto surfaces = complete_surfaces(grid, marks, find_flats(grid), false, notes);
+        return find_lakes({.elevation_m = grid, .marks = marks, .lake_of = lakes}, surfaces, 1);
+    };
+    auto found = search(z);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(double(found[0].nodes), double(truth), 0.03 * double(truth));
+    // Two flat halves that differ by .2 m, whichever is larger.
+    for (const int seam : {60, 100}) {
+        for (int r = 0; r < 160; ++r)
+            for (int c = 0; c < 160; ++c)
+                if (std::hypot(c - 80, r - 80) < 50)
+                    z[{c, r}] = c < seam ? 100.0f : 100.2f;
+        Grid<float> copy = z;
+        found = search(copy);
+        ASSERT_EQ(found.size(), 1u) << seam;
+        EXPECT_EQ(found[0].nodes, truth);
+        EXPECT_FLOAT_EQ(float(found[0].level_m), seam == 60 ? 100.2f : 100.0f);
+    }
 }
 
 TEST(Lakes, ManyLevelsTerracesAndBaysAreTold) {
@@ -324,7 +363,7 @@ TEST(Lakes, ManyLevelsTerracesAndBaysAreTold) {
     Marks marks(z.size);
     LakeOf lakes(z.size);
     std::vector<std::string> notes;
-    const auto surfaces = complete_surfaces(z, marks, find_flats(z), notes);
+    const auto surfaces = complete_surfaces(z, marks, find_flats(z), true, notes);
     const auto found =
         find_lakes({.elevation_m = z, .marks = marks, .lake_of = lakes}, surfaces, 1);
     ASSERT_EQ(found.size(), 2u);

@@ -108,8 +108,9 @@ TEST(Fuzz, DamagedSoundingsAndSourceListsNeverCrash) {
     for (int i = 0; i < 40; ++i)
         csv += "15.00" + std::to_string(i) + ",47.85" + std::to_string(i) + ",-" +
                std::to_string(i) + ".5\n";
-    survive(csv.substr(0, 500), folder / "bad.csv", 3,
-            [&] { dem::read_soundings(folder / "bad.csv", "depth", "", mosaic); });
+    survive(csv.substr(0, 500), folder / "bad.csv", 3, [&] {
+        dem::read_soundings(folder / "bad.csv", {.field = "depth", .crs = {}, .unit = {}}, mosaic);
+    });
     survive(R"({"sources": [{"name": "mine", "url": "https://h/{NS}{lat}.tif", "tile_deg": 1,
                 "missing_status": [403, 404], "named_by_north": true}]})",
             folder / "bad.json", 4, [&] { scene_files::read_sources(folder / "bad.json"); });
