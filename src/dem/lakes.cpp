@@ -7,13 +7,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <span>
 
 namespace tarn::dem {
 
 namespace {
 
 // What lies this much below a surface that runs out is the valley below its dam, not its bed.
-constexpr double dam_m = 1.0;
+constexpr float dam_m = 1.0f;
 constexpr float seam_m = 0.5f; // parts of one lake's surface differ by no more
 constexpr int bay_reach = 6;   // nodes between a lake and a patch of its level that is its bay
 
@@ -317,6 +318,61 @@ bool near_lake(const LakeOf& lake_of, const FlatSurface& surface, int id) {
     return false;
 }
 
+/// The surface alone, and what lies within a metre below it (noise of whole-metre models) where
+/// lake and higher land shut it in. What is open to lower ground is the valley below a dam.
+Filled fill_flat(const LakeSearch& s, float level, Node seed, int id) {
+    const auto& z = s.elevation_m;
+    Filled out = fill_from(z, s.marks, level, std::span(&seed, 1), id, s.lake_of, level);
+    std::vector<Node> shore, touched;
+    // Breadth first over the lake again, for the hollows at its shore.
+    std::vector<Node> lake{seed};
+    s.marks[seed] |= mark::seen;
+    for (std::size_t i = 0; i < lake.size(); ++i)
+        each_neighbour(z.size, lake[i], [&](Node n) {
+            if (s.marks[n] & mark::seen)
+                return;
+            if (s.lake_of[n] == id) {
+                s.marks[n] |= mark::seen;
+                lake.push_back(n);
+            } else if (z[n] < level && z[n] >= level - dam_m && s.lake_of[n] == 0) {
+                shore.push_back(n);
+            }
+        });
+    touched = lake;
+    for (const Node start : shore) {
+        if (s.marks[start] & mark::seen)
+            continue;
+        std::vector<Node> hollow{start};
+        s.marks[start] |= mark::seen;
+        bool shut = true;
+        for (std::size_t i = 0; i < hollow.size(); ++i) {
+            const Node at = hollow[i];
+            shut &=
+                at.col > 0 && at.row > 0 && at.col + 1 < z.size.cols && at.row + 1 < z.size.rows;
+            each_neighbour(z.size, at, [&](Node n) {
+                shut &= !(s.marks[n] & mark::outside) && (s.lake_of[n] == 0 || s.lake_of[n] == id);
+                if (s.lake_of[n] != 0 || !(z[n] < level) || (s.marks[n] & mark::seen))
+                    return;
+                if (z[n] < level - dam_m) {
+                    shut = false;
+                } else {
+                    s.marks[n] |= mark::seen;
+                    hollow.push_back(n);
+                }
+            });
+        }
+        if (shut)
+            for (const Node n : hollow) {
+                s.lake_of[n] = static_cast<std::uint16_t>(id);
+                ++out.nodes;
+            }
+        touched.insert(touched.end(), hollow.begin(), hollow.end());
+    }
+    for (const Node n : touched)
+        s.marks[n] &= static_cast<unsigned char>(~mark::seen);
+    return out;
+}
+
 } // namespace
 
 std::vector<FlatSurface> complete_surfaces(Grid<float>& z, Marks& marks,
@@ -355,15 +411,10 @@ FoundLake fill_surface(const LakeSearch& s, const FlatSurface& surface, int id) 
     Filled filled;
     if (closed)
         filled = *closed;
+    else if (lake.sea)
+        filled = fill_from(s.elevation_m, s.marks, level, lake.seeds, id, s.lake_of);
     else
-        filled = fill_from(s.elevation_m, s.marks, level, lake.seeds, id, s.lake_of,
-                           lake.sea ? -std::numeric_limits<double>::infinity() : level - dam_m);
-    // In whole-metre models a metre can be all that tells a small reservoir from its valley: then
-    // the surface alone is taken.
-    if (runs_out && 2 * filled.at_level < filled.nodes && 2 * surface.nodes > filled.at_level) {
-        drain(s.lake_of, lake.seeds);
-        filled = fill_from(s.elevation_m, s.marks, level, lake.seeds, id, s.lake_of, level);
-    }
+        filled = fill_flat(s, level, surface.middle, id);
     lake.nodes = filled.nodes;
     lake.open_at_edge = filled.open_at_edge;
     // Mostly surface: the lake ends where the flat ends. Else the surface is only the rim of a lake
@@ -382,9 +433,7 @@ void join_bays(const LakeSearch& s, const std::vector<FlatSurface>& surfaces, Fo
         if (surface.level_m != static_cast<float>(lake.level_m) || s.lake_of[surface.middle] != 0 ||
             !near_lake(s.lake_of, surface, lake.id))
             continue;
-        const Node seed[] = {surface.middle};
-        const Filled bay = fill_from(s.elevation_m, s.marks, surface.level_m, seed, lake.id,
-                                     s.lake_of, surface.level_m - dam_m);
+        const Filled bay = fill_flat(s, surface.level_m, surface.middle, lake.id);
         lake.nodes += bay.nodes;
         lake.open_at_edge |= bay.open_at_edge;
         lake.seeds.push_back(surface.middle);

@@ -41,8 +41,8 @@ std::vector<FlatSurface> complete_surfaces(Grid<float>& elevation_m, Marks& mark
                                            std::vector<std::string>& notes);
 
 /// Fills one lake from surfaces of one level. If its water would run out of the data over ground
-/// below the surface (a dam that the grid is too coarse to show), what lies more than a metre
-/// below the surface stays dry.
+/// below the surface (a dam that the grid is too coarse to show), only the surface itself is taken,
+/// and hollows of up to a metre that it shuts in.
 /// @return nodes = 0 if that is no lake: hardly any surface, and all of it open
 FoundLake fill_surface(const LakeSearch& search, const FlatSurface& surface, int id);
 

@@ -84,8 +84,7 @@ std::vector<DataSet> data_sets() {
         {"granby",
          {"granby/granby_dem.tif"},
          {},
-         // 100 flat cells of one patch; the water joins a few more over corners
-         {{"Lake Granby (part)", {40.168, -105.873}, 2523.0, 5.5, 4.0}}},
+         {{"Lake Granby (part)", {40.168, -105.873}, 2523.0, 5.5, 2.0}}},
         {"swellendam",
          {"swellendam/swellendam_srtm_utm33s.tif"},
          {.min_area_km2 = 0.02},
