@@ -43,9 +43,14 @@ Checksums::~Checksums() {
 void Checksums::add(const std::string& path) {
     const std::lock_guard lock(mutex_);
     paths_.push_back(path);
-    if (!worker_.joinable())
-        worker_ = std::thread([this] { work(); });
     changed_.notify_all();
+}
+
+void Checksums::start() {
+    const std::lock_guard lock(mutex_);
+    if (!started_)
+        worker_ = std::thread([this] { work(); });
+    started_ = true;
 }
 
 void Checksums::work() {
@@ -64,6 +69,7 @@ void Checksums::work() {
 }
 
 std::vector<std::string> Checksums::finish(const Progress& progress) {
+    start();
     std::unique_lock lock(mutex_);
     closed_ = true;
     changed_.notify_all();

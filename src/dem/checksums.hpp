@@ -19,7 +19,9 @@ public:
     Checksums(const Checksums&) = delete;
     Checksums& operator=(const Checksums&) = delete;
 
+    /// Files added wait until start(): reading and warping the same files has all cores busy.
     void add(const std::string& path);
+    void start();
     /// Waits for all; in the order they were added.
     /// @throws tarn::Cancelled
     std::vector<std::string> finish(const Progress& progress);
@@ -29,6 +31,7 @@ private:
     std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<std::string> paths_, sums_; ///< under mutex_
+    bool started_ = false;                  ///< under mutex_
     bool closed_ = false;                   ///< under mutex_: no more will come
     std::atomic<bool> stop_{false};
     std::thread worker_;

@@ -264,6 +264,7 @@ void Work::build_grid() {
         if (source.findings->forgotten)
             note(source.name + ": undeclared voids (NaN, -9999) taken as no data");
     sources_.clear();
+    checksums_.start();
     float highest = -1e9f;
     for (const float z : mosaic_.elevation_m.values)
         highest = z > highest ? z : highest; // NaN compares false
