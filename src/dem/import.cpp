@@ -7,6 +7,7 @@
 #include "dem/flat.hpp"
 #include "dem/lakes.hpp"
 #include "dem/ortho.hpp"
+#include "dem/parallel.hpp"
 #include "dem/soundings.hpp"
 #include "dem/statistics.hpp"
 #include "dem/voids.hpp"
@@ -623,9 +624,10 @@ void Work::make_beds() {
 
 std::vector<LakeRecord> Work::measure_lakes() {
     progress_.report(0.76, "measuring");
-    std::vector<LakeRecord> out;
-    for (std::size_t k = 0; k < lakes_.size(); ++k) {
-        LakeRecord record;
+    std::vector<LakeRecord> out(lakes_.size());
+    each_in_parallel(int(lakes_.size()), [&](int i) {
+        const auto k = std::size_t(i);
+        LakeRecord& record = out[k];
         record.id = lakes_[k].id;
         record.name = lakes_[k].sea ? "sea" : "";
         record.sea = lakes_[k].sea;
@@ -636,10 +638,9 @@ std::vector<LakeRecord> Work::measure_lakes() {
             beds_.empty() ? (flat_share_[k] > 0.5 ? Bed::unknown : Bed::measured) : beds_[k];
         if (lakes_[k].nodes > 0) {
             measure(record, surface(), lake_of_, boxes_[k], mosaic_.frame);
-            record.parts = parts_of(lake_of_, marks_, record.id, boxes_[k]);
+            record.parts = parts_of(lake_of_, marks_, record.id, boxes_[k]); // marks its own nodes
         }
-        out.push_back(record);
-    }
+    });
     clear(marks_, mark::seen);
     return out;
 }

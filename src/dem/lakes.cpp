@@ -2,6 +2,7 @@
 
 #include "core/text.hpp"
 #include "dem/fill.hpp"
+#include "dem/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -119,18 +120,38 @@ void ramps(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
            std::vector<std::string>& notes) {
     constexpr float even_m = 0.06f;
     constexpr std::size_t least = 64;
-    const auto even = [&](Node n) {
-        if (marks[n] & (mark::flat | mark::filled | mark::outside))
+    constexpr unsigned char known = mark::flat | mark::filled | mark::outside;
+    const auto is_even = [&](Node n) {
+        if (marks[n] & known)
             return false;
         float low = z[n], high = z[n];
-        bool inside = n.col > 0 && n.row > 0 && n.col + 1 < z.size.cols && n.row + 1 < z.size.rows;
+        bool inside = true;
         each_neighbour(z.size, n, [&](Node m) {
-            inside &= !(marks[m] & (mark::flat | mark::filled | mark::outside));
+            inside &= !(marks[m] & known);
             low = std::min(low, z[m]);
             high = std::max(high, z[m]);
         });
         return inside && high - low <= even_m;
     };
+    // All nodes are looked at first, in bands of rows on all cores; then the even ones are marked.
+    constexpr int band = 64;
+    std::vector<std::vector<Node>> found_even(std::size_t((z.size.rows + band - 1) / band));
+    each_in_parallel(int(found_even.size()), [&](int k) {
+        for (int row = std::max(k * band, 1); row < std::min((k + 1) * band, z.size.rows - 1);
+             ++row)
+            for (int col = 1; col + 1 < z.size.cols; ++col) {
+                const float* here = &z.values[z.index({col, row})];
+                if (std::abs(here[0] - here[1]) <= even_m && // most land ends here
+                    std::abs(here[0] - here[-1]) <= even_m && is_even({col, row}))
+                    found_even[std::size_t(k)].push_back({col, row});
+            }
+    });
+    for (auto& nodes : found_even) {
+        for (const Node n : nodes)
+            marks[n] |= mark::even;
+        nodes = {};
+    }
+    const auto even = [&](Node n) { return (marks[n] & mark::even) != 0; };
     // What makes it water rather than level ground (the flat bottom of a lake's own bed, say): it
     // goes on from a flat surface, or the land breaks up from it at the shore. Looked at three
     // nodes away from all of it: the nearer ones are its own shore.
@@ -173,9 +194,6 @@ void ramps(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
     for (int row = 1; row + 1 < z.size.rows; ++row)
         for (int col = 1; col + 1 < z.size.cols; ++col) {
             const Node start{col, row};
-            const float* here = &z.values[z.index(start)];
-            if (!(std::abs(here[0] - here[1]) <= even_m && std::abs(here[0] - here[-1]) <= even_m))
-                continue; // most land ends here
             if ((marks[start] & mark::seen) || !even(start))
                 continue;
             std::vector<Node> nodes{start};
@@ -221,7 +239,7 @@ void ramps(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
                 (beside_flat(nodes) || (20 * uneven <= nodes.size() && shore(nodes, level))))
                 found.push_back(surface_of(nodes, level));
         }
-    clear(marks, mark::seen);
+    clear(marks, mark::seen | mark::even);
     std::size_t nodes_all = 0;
     float most = 0.0f;
     for (FlatSurface& surface : found) {

@@ -12,6 +12,7 @@ namespace mark {
 inline constexpr unsigned char outside = 1; ///< no data, open to the grid's edge: never wet
 inline constexpr unsigned char filled = 2;  ///< no data, but enclosed: interpolated
 inline constexpr unsigned char flat = 4;    ///< in a flat surface: the water's, not the ground's
+inline constexpr unsigned char even = 16;   ///< scratch of the search for ramps
 inline constexpr unsigned char seen = 8;    ///< scratch for searches, cleared after use
 } // namespace mark
 

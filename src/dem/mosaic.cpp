@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <gdal_alg.h>
 #include <gdal_utils.h>
 #include <limits>
@@ -298,8 +299,15 @@ FlatRows find_source_flats(GDALDataset& ds, int c0, int r0, int c1, int r1, bool
                            bool& stepped) {
     FlatFinder finder(c1 - c0);
     constexpr int strip = 64;
+    // The next strip is read while this one is searched.
+    const auto read = [&](int row) {
+        return read_window(ds, c0, row, {c1 - c0, std::min(strip, r1 - row)});
+    };
+    auto coming = std::async(std::launch::async, read, r0);
     for (int row = r0; row < r1; row += strip) {
-        const Grid<float> part = read_window(ds, c0, row, {c1 - c0, std::min(strip, r1 - row)});
+        const Grid<float> part = coming.get();
+        if (row + strip < r1)
+            coming = std::async(std::launch::async, read, row + strip);
         float sum = 0.0f; // NaN if any height is
         for (const float z : part.values)
             sum += z * 0.0f;

@@ -5,6 +5,7 @@
 #include "dem/gdal_door.hpp"
 #include "dem/mosaic.hpp"
 
+#include <cstring>
 #include <limits>
 #include <ogr_spatialref.h>
 #include <ogr_srs_api.h>
@@ -20,9 +21,12 @@ Dataset create(const std::filesystem::path& path, GridSize size, int bands, GDAL
     CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", "NO"); // no .aux.xml beside it; see finish()
     auto* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
     CPLStringList options;
-    options.SetNameValue("COMPRESS", "DEFLATE");
+    // Zstandard at its quickest packs as well as deflate in half the time; GDAL knows it since 2.3.
+    const char* offered = driver->GetMetadataItem(GDAL_DMD_CREATIONOPTIONLIST);
+    const bool zstd = offered && std::strstr(offered, "ZSTD");
+    options.SetNameValue("COMPRESS", zstd ? "ZSTD" : "DEFLATE");
+    options.SetNameValue(zstd ? "ZSTD_LEVEL" : "ZLEVEL", "1");
     options.SetNameValue("PREDICTOR", type == GDT_Float32 ? "3" : "2");
-    options.SetNameValue("ZLEVEL", "1"); // twice as fast as the default, a few percent larger
     options.SetNameValue("TILED", "YES");
     options.SetNameValue("NUM_THREADS", "ALL_CPUS");
     options.SetNameValue("BIGTIFF", "IF_SAFER");
