@@ -124,6 +124,9 @@ int run_stats(const Words& words) {
                                                     : std::numeric_limits<double>::quiet_NaN()};
         // Beyond the pass the figures are of what the data happen to hold: not drawn.
         const bool cut = table.spill && table.spill->at_surface;
+        if (table.spill &&
+            (cut || table.spill->level_m > *std::max_element(levels.begin(), levels.end())))
+            plot.spill_level_m = std::numeric_limits<double>::quiet_NaN(); // not within the plot
         for (const dem::Stage& s : table.stages)
             if (!s.open_at_edge || cut)
                 plot.points.push_back(

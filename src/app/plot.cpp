@@ -61,6 +61,7 @@ void draw_stages(const StagePlot& plot, const fs::path& path) {
         high = std::max(high, p.level_m);
         volumes |= !std::isnan(p.volume_million_m3);
     }
+    high = std::max(high, plot.spill_level_m); // NaN compares false: no line
     if (low == high)
         high = low + 1.0;
     std::string script = text(
@@ -68,7 +69,7 @@ void draw_stages(const StagePlot& plot, const fs::path& path) {
         "\nset title ", quoted(plot.title), " noenhanced\nset ylabel 'water level [m]'\n",
         "set xlabel 'area [km²]' textcolor rgb '#1f5fa8'\nset yrange [", low, ":", high,
         "]\nset xrange [0:*]\nset grid\nset border 15\nset tics nomirror\n",
-        "set key bottom right box opaque\n");
+        "set key bottom right box opaque width 1\n");
     if (volumes)
         script += "set x2label 'volume [10⁶ m³]' textcolor rgb '#b0482f'\nset x2tics\n"
                   "set x2range [0:*]\n";

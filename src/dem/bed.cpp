@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/text.hpp"
 #include "dem/gdal_door.hpp"
+#include "dem/median.hpp"
 #include "dem/voids.hpp"
 
 #include <algorithm>
@@ -15,12 +16,6 @@ namespace tarn::dem {
 namespace {
 
 constexpr float none = std::numeric_limits<float>::quiet_NaN();
-
-double median(std::vector<float> values) {
-    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 template <class Visit>
 void each_in(const Box& box, Visit visit) {

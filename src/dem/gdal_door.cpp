@@ -39,6 +39,19 @@ int CPL_STDCALL GdalProgress::callback(double fraction, const char*, void* self)
     return TRUE;
 }
 
+ThreadOptions::ThreadOptions(std::initializer_list<std::pair<const char*, std::string>> options) {
+    for (const auto& [name, value] : options) {
+        const char* old = CPLGetThreadLocalConfigOption(name, nullptr);
+        before_.emplace_back(name, old ? old : "");
+        CPLSetThreadLocalConfigOption(name, value.c_str());
+    }
+}
+
+ThreadOptions::~ThreadOptions() {
+    for (const auto& [name, value] : before_)
+        CPLSetThreadLocalConfigOption(name.c_str(), value.empty() ? nullptr : value.c_str());
+}
+
 Dataset wrap_memory(void* data, GridSize size, GDALDataType type) {
     register_drivers();
     auto* driver = GetGDALDriverManager()->GetDriverByName("MEM");

@@ -62,6 +62,18 @@ private:
     bool cancelled_ = false;
 };
 
+/// Sets GDAL's options for this thread as long as it lives.
+class ThreadOptions {
+public:
+    ThreadOptions(std::initializer_list<std::pair<const char*, std::string>> options);
+    ~ThreadOptions();
+    ThreadOptions(const ThreadOptions&) = delete;
+    ThreadOptions& operator=(const ThreadOptions&) = delete;
+
+private:
+    std::vector<std::pair<std::string, std::string>> before_; ///< "" = was not set
+};
+
 /// A MEM dataset of one band over our own memory; nothing is copied.
 /// @throws tarn::Error  if GDAL has no memory for it
 Dataset wrap_memory(void* data, GridSize size, GDALDataType type);

@@ -18,6 +18,26 @@ public:
         return voids_declared ? std::numeric_limits<double>::quiet_NaN() : -1e10;
     }
     bool voids_declared = true;
+
+protected:
+    /// Heights of a window; `stride` floats from one row of `out` to the next.
+    virtual CPLErr read(int x, int y, int cols, int rows, float* out, GSpacing stride) = 0;
+
+    CPLErr IReadBlock(int x_block, int y_block, void* out) override {
+        const int x = x_block * nBlockXSize, y = y_block * nBlockYSize;
+        return read(x, y, std::min(nBlockXSize, nRasterXSize - x),
+                    std::min(nBlockYSize, nRasterYSize - y), static_cast<float*>(out), nBlockXSize);
+    }
+    /// Whole windows of floats go straight through, not by way of blocks of our own.
+    CPLErr IRasterIO(GDALRWFlag way, int x, int y, int cols, int rows, void* out, int out_cols,
+                     int out_rows, GDALDataType type, GSpacing pixel, GSpacing line,
+                     GDALRasterIOExtraArg* extra) override {
+        if (way == GF_Read && type == GDT_Float32 && cols == out_cols && rows == out_rows &&
+            pixel == 4 && line % 4 == 0)
+            return read(x, y, cols, rows, static_cast<float*>(out), line / 4);
+        return GDALRasterBand::IRasterIO(way, x, y, cols, rows, out, out_cols, out_rows, type,
+                                         pixel, line, extra);
+    }
 };
 
 class HeightBand final : public ViewBand {
@@ -42,26 +62,8 @@ public:
         eAccess = GA_ReadOnly;
     }
 
-protected:
-    CPLErr IReadBlock(int x_block, int y_block, void* out) override {
-        const int x = x_block * nBlockXSize, y = y_block * nBlockYSize;
-        return read(x, y, std::min(nBlockXSize, nRasterXSize - x),
-                    std::min(nBlockYSize, nRasterYSize - y), static_cast<float*>(out), nBlockXSize);
-    }
-    /// Whole windows of floats go straight through, not by way of blocks of our own.
-    CPLErr IRasterIO(GDALRWFlag way, int x, int y, int cols, int rows, void* out, int out_cols,
-                     int out_rows, GDALDataType type, GSpacing pixel, GSpacing line,
-                     GDALRasterIOExtraArg* extra) override {
-        if (way == GF_Read && type == GDT_Float32 && cols == out_cols && rows == out_rows &&
-            pixel == 4 && line % 4 == 0)
-            return read(x, y, cols, rows, static_cast<float*>(out), line / 4);
-        return GDALRasterBand::IRasterIO(way, x, y, cols, rows, out, out_cols, out_rows, type,
-                                         pixel, line, extra);
-    }
-
 private:
-    /// @param stride  floats from one row of `out` to the next
-    CPLErr read(int x, int y, int cols, int rows, float* out, GSpacing stride) {
+    CPLErr read(int x, int y, int cols, int rows, float* out, GSpacing stride) override {
         const auto width = std::size_t(cols);
         // GDAL finds a line of an ASCII grid by calling itself for the line before: with a header
         // that lies about their number that never ends, or ends the stack. Line by line it is safe.
@@ -204,24 +206,8 @@ public:
         eAccess = GA_ReadOnly;
     }
 
-protected:
-    CPLErr IReadBlock(int x_block, int y_block, void* out) override {
-        const int x = x_block * nBlockXSize, y = y_block * nBlockYSize;
-        return read(x, y, std::min(nBlockXSize, nRasterXSize - x),
-                    std::min(nBlockYSize, nRasterYSize - y), static_cast<float*>(out), nBlockXSize);
-    }
-    CPLErr IRasterIO(GDALRWFlag way, int x, int y, int cols, int rows, void* out, int out_cols,
-                     int out_rows, GDALDataType type, GSpacing pixel, GSpacing line,
-                     GDALRasterIOExtraArg* extra) override {
-        if (way == GF_Read && type == GDT_Float32 && cols == out_cols && rows == out_rows &&
-            pixel == 4 && line % 4 == 0)
-            return read(x, y, cols, rows, static_cast<float*>(out), line / 4);
-        return GDALRasterBand::IRasterIO(way, x, y, cols, rows, out, out_cols, out_rows, type,
-                                         pixel, line, extra);
-    }
-
 private:
-    CPLErr read(int x, int y, int cols, int rows, float* out, GSpacing stride) {
+    CPLErr read(int x, int y, int cols, int rows, float* out, GSpacing stride) override {
         constexpr float none = std::numeric_limits<float>::quiet_NaN();
         for (int r = 0; r < rows; ++r)
             std::fill_n(out + r * stride, cols, none);

@@ -6,6 +6,7 @@
 #include "dem/fill.hpp"
 #include "dem/flat.hpp"
 #include "dem/lakes.hpp"
+#include "dem/median.hpp"
 #include "dem/ortho.hpp"
 #include "dem/parallel.hpp"
 #include "dem/soundings.hpp"
@@ -163,7 +164,6 @@ public:
     ImportResult pack(std::vector<LakeRecord> lakes, const HeightsSink& keep_heights);
 
     ImportReport finish_report();
-    const Mosaic& mosaic() const { return mosaic_; }
 
 private:
     void note(const std::string& words) { report_.notes.push_back(words); }
@@ -470,11 +470,7 @@ double Work::surface_height(const FoundLake& lake) const {
             if (lake_of_[n] == lake.id && (marks_[n] & (mark::flat | mark::filled)))
                 heights.push_back(mosaic_.elevation_m[n]);
         }
-    if (heights.empty())
-        return lake.level_m;
-    const auto middle = heights.begin() + std::ptrdiff_t(heights.size() / 2);
-    std::nth_element(heights.begin(), middle, heights.end());
-    return *middle;
+    return heights.empty() ? lake.level_m : double(median(std::move(heights)));
 }
 
 /// Merges what was surveyed into one lake; `made` counts the lakes that it reached.
@@ -785,8 +781,6 @@ Detection detect_lakes(const ImportOptions& options, const Progress& progress) {
                      });
     for (std::size_t i = 0; i < out.lakes.size(); ++i)
         out.lakes[i].id = int(i + 1);
-    out.frame = work.mosaic().frame;
-    out.spacing_m = work.mosaic().spacing_m;
     out.report = work.finish_report();
     return out;
 }

@@ -79,8 +79,6 @@ ImportResult import_dem(const ImportOptions& options, const Progress& progress,
                         const HeightsSink& keep_heights = {});
 
 struct Detection {
-    geo::Frame frame;
-    double spacing_m = 0.0;
     std::vector<LakeRecord> lakes; ///< largest first; the sea, if there is any, last
     ImportReport report;
 };

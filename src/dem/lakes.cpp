@@ -2,6 +2,7 @@
 
 #include "core/text.hpp"
 #include "dem/fill.hpp"
+#include "dem/median.hpp"
 #include "dem/parallel.hpp"
 
 #include <algorithm>
@@ -29,12 +30,6 @@ std::vector<Run> runs_of(std::vector<Node> nodes) {
         else
             out.push_back({n.row, n.col, n.col});
     return out;
-}
-
-float median(std::vector<float>& values) {
-    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 FlatSurface surface_of(const std::vector<Node>& nodes, float level_m) {
@@ -188,7 +183,7 @@ void ramps(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
         constexpr float break_m = 0.3f;
         std::vector<float> rise;
         around(nodes, [&](Node m) { rise.push_back(z[m] - level); });
-        return !rise.empty() && median(rise) >= break_m;
+        return !rise.empty() && median(std::move(rise)) >= break_m;
     };
     std::vector<FlatSurface> found;
     for (int row = 1; row + 1 < z.size.rows; ++row)
@@ -213,7 +208,7 @@ void ramps(Grid<float>& z, Marks& marks, std::vector<FlatSurface>& surfaces,
             std::vector<float> heights;
             for (const Node n : nodes)
                 heights.push_back(z[n]);
-            const float level = median(heights);
+            const float level = median(std::move(heights));
             std::size_t lower = 0, higher = 0, off = 0, uneven = 0;
             for (const Node n : nodes) {
                 off += std::abs(z[n] - level) > seam_m;

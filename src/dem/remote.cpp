@@ -77,33 +77,6 @@ std::string tile_url(const RemoteSource& source, int south_deg, int west_deg) {
 
 namespace {
 
-/// Options of GDAL's network access, for this thread and as long as this lives.
-class NetworkOptions {
-public:
-    explicit NetworkOptions(double timeout_s) {
-        set("GDAL_DISABLE_READDIR_ON_OPEN", "EMPTY_DIR"); // no looking for side files
-        set("GTIFF_USE_DEFER_STRILE_LOADING", "NO");      // a cut header fails at once
-        set("GDAL_HTTP_CONNECTTIMEOUT", text(std::min(timeout_s, 10.0)));
-        set("GDAL_HTTP_TIMEOUT", text(timeout_s));
-        set("GDAL_HTTP_MAX_RETRY", "1");
-        set("GDAL_HTTP_RETRY_DELAY", "0.5");
-    }
-    ~NetworkOptions() {
-        for (const auto& [name, value] : before_)
-            CPLSetThreadLocalConfigOption(name.c_str(), value.empty() ? nullptr : value.c_str());
-    }
-    NetworkOptions(const NetworkOptions&) = delete;
-    NetworkOptions& operator=(const NetworkOptions&) = delete;
-
-private:
-    void set(const char* name, const std::string& value) {
-        const char* old = CPLGetThreadLocalConfigOption(name, nullptr);
-        before_.emplace_back(name, old ? old : "");
-        CPLSetThreadLocalConfigOption(name, value.c_str());
-    }
-    std::vector<std::pair<std::string, std::string>> before_;
-};
-
 enum class Answer { there, missing };
 
 /// Asks for a tile; what GDAL remembers of an earlier failure is forgotten first.
@@ -360,7 +333,14 @@ Fetched fetch_tiles(const RemoteSource& source, const Bounds& bounds, const Fetc
           source.tile_deg == std::floor(source.tile_deg)))
         throw Error(text("source '", source.name, "': tile_deg is ", source.tile_deg),
                     "whole degrees from 1 to 90 are possible");
-    const NetworkOptions network(options.timeout_s);
+    const ThreadOptions network{
+        {"GDAL_DISABLE_READDIR_ON_OPEN", "EMPTY_DIR"}, // no looking for side files
+        {"GDAL_PAM_ENABLED", "NO"},                    // and none beside the copies
+        {"GTIFF_USE_DEFER_STRILE_LOADING", "NO"},      // a cut header fails at once
+        {"GDAL_HTTP_CONNECTTIMEOUT", text(std::min(options.timeout_s, 10.0))},
+        {"GDAL_HTTP_TIMEOUT", text(options.timeout_s)},
+        {"GDAL_HTTP_MAX_RETRY", "1"},
+        {"GDAL_HTTP_RETRY_DELAY", "0.5"}};
     const auto edge = [&](double v) {
         return int(std::floor(v / source.tile_deg) * source.tile_deg);
     };

@@ -18,7 +18,6 @@ Dataset create(const std::filesystem::path& path, GridSize size, int bands, GDAL
                const GeoTransform& transform, const std::string& crs, bool alpha,
                const GdalMessages& messages) {
     register_drivers();
-    CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", "NO"); // no .aux.xml beside it; see finish()
     auto* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
     CPLStringList options;
     // Zstandard at its quickest packs as well as deflate in half the time; GDAL knows it since 2.3.
@@ -52,7 +51,6 @@ void finish(Dataset out, const std::filesystem::path& path, CPLErr written,
     // Errors of a full disk show only when the last block goes out.
     out->FlushCache(true);
     out.reset();
-    CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", nullptr); // .aux.xml are read where they are
     if (written != CE_None || messages.failed())
         throw Error(path.string() + ": cannot be written (" + messages.last() + ")",
                     "check the free space and permissions");
@@ -63,6 +61,7 @@ void finish(Dataset out, const std::filesystem::path& path, CPLErr written,
 void write_heightfield(const std::filesystem::path& path, const Heightfield& field,
                        const geo::Frame& frame, const std::string& description, bool nodata_zero) {
     GdalMessages messages;
+    const ThreadOptions no_side_files{{"GDAL_PAM_ENABLED", "NO"}};
     auto out = create(path, field.size(), 1, GDT_UInt16,
                       geo_transform(frame, field.west_m, field.north_m, field.spacing_m), frame.wkt,
                       false, messages);
@@ -82,6 +81,7 @@ void write_heightfield(const std::filesystem::path& path, const Heightfield& fie
 void write_heights(const std::filesystem::path& path, const Grid<float>& z,
                    const Heightfield& place, const geo::Frame& frame) {
     GdalMessages messages;
+    const ThreadOptions no_side_files{{"GDAL_PAM_ENABLED", "NO"}};
     auto out = create(path, z.size, 1, GDT_Float32,
                       geo_transform(frame, place.west_m, place.north_m, place.spacing_m), frame.wkt,
                       false, messages);
@@ -97,6 +97,7 @@ void write_heights(const std::filesystem::path& path, const Grid<float>& z,
 
 void write_ortho(const std::filesystem::path& path, const Ortho& ortho, const geo::Frame& frame) {
     GdalMessages messages;
+    const ThreadOptions no_side_files{{"GDAL_PAM_ENABLED", "NO"}};
     const Picture& p = ortho.picture;
     const double s = ortho.spacing_m;
     auto out = create(path, {p.width_px, p.height_px}, 4, GDT_Byte,
@@ -112,6 +113,7 @@ void write_elevations(const std::filesystem::path& path, const Grid<float>& z,
                       const std::string& crs, const double transform[6],
                       const std::string& description) {
     GdalMessages messages;
+    const ThreadOptions no_side_files{{"GDAL_PAM_ENABLED", "NO"}};
     GeoTransform g;
     std::copy(transform, transform + 6, g.v);
     auto out = create(path, z.size, 1, GDT_Float32, g, crs, false, messages);

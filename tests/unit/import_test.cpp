@@ -8,7 +8,9 @@
 
 #include <array>
 #include <cmath>
+#include <gdal_utils.h>
 #include <gtest/gtest.h>
+#include <iomanip>
 
 using namespace tarn;
 using test_support::data;
@@ -286,6 +288,60 @@ TEST(Import, ADatumOffsetMovesElevationsAndNotDepths) {
     const auto result = dem::import_dem(options, {});
     EXPECT_NEAR(*only(result).volume_m3, volume, 0.015 * volume);
     EXPECT_EQ(only(result).bed, Bed::interpolated);
+}
+
+TEST(Import, ContoursAndABathymetryInAnotherCrsMakeTheBed) {
+    const TempFolder folder;
+    Grid<float> z = bowl(201, 5.0), bed = z;
+    for (float& v : z.values)
+        v = std::max(v, 10.0f); // the DEM holds the surface of a lake 10 m deep
+    for (float& v : bed.values)
+        v = 10.0f - v; // depths, negative on land
+    write(folder / "flat.tif", z, 500'000, 5'300'000, 5.0);
+    const double volume = M_PI * 250 * 250 * 5;
+    {
+        // Depth contours every metre, as lines in longitude and latitude.
+        const geo::Frame utm =
+            dem::import_dem({.dems = {folder / "flat.tif"}, .level_m = 10.0}, {}).frame;
+        std::ofstream json(folder / "contours.geojson");
+        json << R"({"type":"FeatureCollection","features":[)";
+        for (int depth = 1; depth <= 9; ++depth) {
+            json << (depth > 1 ? "," : "") << R"({"type":"Feature","properties":{"depth":)" << depth
+                 << R"(},"geometry":{"type":"LineString","coordinates":[)";
+            const double r = std::sqrt((10.0 - depth) / 40.0) * 500.0;
+            for (int k = 0; k <= 90; ++k) { // the middle of the bowl is at 500 502.5, 5 299 497.5
+                const double a = 2 * M_PI * k / 90;
+                const GeoPoint p =
+                    geo::to_geo(utm, {500'502.5 + r * std::cos(a) - utm.origin_easting_m,
+                                      5'299'497.5 + r * std::sin(a) - utm.origin_northing_m});
+                json << (k ? "," : "") << std::setprecision(12) << "[" << p.lon_deg << ","
+                     << p.lat_deg << "]";
+            }
+            json << "]}}";
+        }
+        json << "]}";
+    }
+    const auto contours = dem::import_dem(
+        {.dems = {folder / "flat.tif"}, .level_m = 10.0, .soundings = folder / "contours.geojson"},
+        {});
+    EXPECT_EQ(only(contours).bed, Bed::interpolated);
+    EXPECT_NEAR(*only(contours).volume_m3, volume, 0.02 * volume);
+    EXPECT_NEAR(*only(contours).max_depth_m, 9.0, 0.1); // nothing is known inside the innermost
+    // The same bed as a raster in another projection, grid and extent.
+    write(folder / "bed.tif", bed, 500'000, 5'300'000, 5.0);
+    dem::Dataset in(GDALDataset::Open((folder / "bed.tif").c_str(), GDAL_OF_RASTER));
+    dem::Arguments words{"-t_srs", "EPSG:3035", "-tr",        "7",  "7",
+                         "-r",     "cubic",     "-dstnodata", "nan"};
+    GDALWarpAppOptions* options = GDALWarpAppOptionsNew(words.get(), nullptr);
+    GDALDatasetH handle = GDALDataset::ToHandle(in.get());
+    dem::Dataset(GDALDataset::FromHandle(
+        GDALWarp((folder / "laea.tif").c_str(), nullptr, 1, &handle, options, nullptr)));
+    GDALWarpAppOptionsFree(options);
+    const auto warped = dem::import_dem(
+        {.dems = {folder / "flat.tif"}, .level_m = 10.0, .bathymetry = folder / "laea.tif"}, {});
+    EXPECT_EQ(only(warped).bed, Bed::measured);
+    EXPECT_NEAR(*only(warped).volume_m3, volume, 0.01 * volume);
+    EXPECT_NEAR(*only(warped).max_depth_m, 10.0, 0.05);
 }
 
 TEST(Import, NoTileIsDroppedForItsVerticalDatum) {

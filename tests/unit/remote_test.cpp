@@ -4,6 +4,7 @@
 #include "dem/import.hpp"
 #include "dem/remote.hpp"
 #include "dem/write.hpp"
+#include "scene_files/source_list.hpp"
 #include "support/files.hpp"
 #include "support/http_server.hpp"
 
@@ -92,6 +93,35 @@ TEST(Remote, UrlsFollowTheDocumentedLayouts) {
               "https://prd-tnm.s3.amazonaws.com/StagedProducts/Elevation/13/TIFF/current/n43w123/"
               "USGS_13_n43w123.tif");
     EXPECT_THROW(dem::tile_url({.name = "x", .url = "http://h/{zoom}.tif"}, 1, 1), Error);
+}
+
+TEST(Remote, SourcesOfOnesOwnComeFromAFile) {
+    const TempFolder folder;
+    const auto file = folder / "sources.json";
+    const auto read = [&](const std::string& content) -> std::string {
+        std::ofstream(file) << content;
+        try {
+            const auto sources = scene_files::read_sources(file);
+            return sources.size() == 1 ? dem::tile_url(sources[0], -39, 176) : "not one";
+        } catch (const Error& error) {
+            return error.what();
+        }
+    };
+    EXPECT_EQ(read(R"({"sources": [{"name": "mine", "url": "https://h/{ns}{lat}{ew}{lon}.tif",
+                                    "named_by_north": true, "missing_status": [403]}]})"),
+              "https://h/s38e176.tif");
+    EXPECT_NE(
+        read(R"({"sources": [{"name": "mine", "url": "ftp://h/{lat}{lon}"}]})").find("http://"),
+        std::string::npos);
+    EXPECT_NE(read(R"({"sources": [{"name": "mine", "url": "http://h/a.tif"}]})").find("no {lat}"),
+              std::string::npos);
+    EXPECT_NE(read(R"({"sources": [{"name": "../up", "url": "http://h/{lat}{lon}"}]})")
+                  .find("no plain word"),
+              std::string::npos);
+    EXPECT_NE(read(R"({"sources": [{"name": "m", "url": "http://h/{lat}{lon}", "tiledeg": 2}]})")
+                  .find("'tiledeg', which is no field"),
+              std::string::npos);
+    EXPECT_NE(read("{").find("sources.json"), std::string::npos);
 }
 
 TEST(Remote, FetchesTheBlocksOfTheRegionAndKeepsThem) {
