@@ -64,6 +64,7 @@ void draw_stages(const StagePlot& plot, const fs::path& path) {
     high = std::max(high, plot.spill_level_m); // NaN compares false: no line
     if (low == high)
         high = low + 1.0;
+    high += 0.06 * (high - low); // room for the label of the topmost line
     std::string script = text(
         "set encoding utf8\nset terminal ", terminal, "\nset output ", quoted(partial.string()),
         "\nset title ", quoted(plot.title), " noenhanced\nset ylabel 'water level [m]'\n",
