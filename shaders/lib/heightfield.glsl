@@ -1,16 +1,13 @@
-// lib/heightfield.glsl — first hit of a ray with the bilinear ground, and with the water above it.
+// lib/heightfield.glsl — what every way of finding a ray's first hit shares: the field, rays, the part of a
+// ray that can meet anything, and the exact answer inside one cell. The ways themselves are in lib/walks/,
+// one a file, each a function trace_field(); passes include lib/walk.glsl, which the program replaces by
+// the one chosen.
 // Pure functions; samplers are parameters. C++ twin: src/reference/heightfield.hpp
 //
-// Method   maximum mipmap (Tevs, Ihrke & Seidel 2008) with blocks of 4 x 4 children and the exact
-//          bilinear patch in each cell (Ramsey, Potter & Hansen 2004): no step length, no epsilon to
-//          creep by; cells are counted in integers, so every step leaves its block. Blocks of level
-//          L cover 4^L x 4^L cells; level 0 is the cell itself, whose four nodes one gather fetches.
-// Exact    A block is skipped only if the ray stays above its greatest node, raised by the rounding
-//          of the ray's own height: a bilinear surface never exceeds its nodes. Neighbouring cells
-//          share their nodes, and a ray found below the surface where it enters a cell counts as a
-//          hit there: nothing slips through a border.
-// Fails    at float32's limits only: beyond some 2^24 cells of distance, or where the ray is flatter
-//          than the rounding of its height. Figures: docs/limits.md.
+// Surface  bilinear between nodes (Ramsey, Potter & Hansen 2004 solve the same patch). Four texels are
+//          gathered and interpolated in float: hardware filters have 8-bit weights.
+// Borders  Neighbouring cells share their nodes, and a ray found below the surface where it enters a
+//          cell counts as a hit there: nothing slips through a border.
 
 #include "shared/view_block.h"
 
@@ -18,18 +15,22 @@ struct Field {
     ivec2 cells;       // nodes minus one
     vec2 nodes;        // as floats
     vec2 texel;        // one over them
-    vec2 ground_m;     // x: height of code 0, y: metres per unit texel
+    vec2 ground_m;     // x: height of code 0, y: metres per code
     vec2 water_m;      // the same for the water
     float top_m;       // no node is higher
     float bottom_m;    // of the block of earth, below all nodes
-    int root;          // level whose one block covers the field
-    int step_limit;    // the walk ends here whatever happens
+    float spacing_m;   // between nodes
+    int root;          // maximum mipmap: level whose one block covers the field
+    int shift;         // cone map: blocks of 2^shift cells a side
+    vec2 cone_m;       // cone map: metres per unit texel, of the ground's (x) and the surface's (y)
+    float setting;     // of methods that have one: steps, or rays' least stride
 };
 
 // field_of — the field that a view block describes.
 Field field_of(ViewBlock view) {
-    return Field(ivec2(view.grid.xy) - 1, view.grid.xy, 1.0 / view.grid.xy, vec2(0.0, view.heights.y), view.heights.zw,
-                 view.grid.w, view.forward.w, int(view.walk.x), int(view.walk.y));
+    return Field(ivec2(view.grid.xy) - 1, view.grid.xy, 1.0 / view.grid.xy, vec2(0.0, view.heights.y / 65535.0),
+                 vec2(view.heights.z, view.heights.w / 65535.0),
+                 view.grid.w, view.forward.w, view.grid.z, view.walk.x, view.walk.y, view.bounds.xy, view.bounds.z);
 }
 
 // Origin and direction per metre of path: columns, rows, height. Columns and rows count from the
@@ -39,6 +40,7 @@ struct Ray {
     ivec2 base;
     vec3 origin;
     vec3 direction;
+    float begin;    // metres along it: nothing is met before
 };
 
 struct Hit {
@@ -54,13 +56,17 @@ struct Hit {
 Ray ray_from(ivec2 base, vec3 origin, vec3 direction, float spacing_m) {
     vec2 whole = floor(origin.xy);
     return Ray(base + ivec2(whole), vec3(origin.xy - whole, origin.z),
-               vec3(direction.x / spacing_m, -direction.y / spacing_m, direction.z));
+               vec3(direction.x / spacing_m, -direction.y / spacing_m, direction.z), 0.0);
 }
 
 // bilinear — heights in gather order (0,1) (1,1) (1,0) (0,0), columns and rows.
 float bilinear(vec4 h, vec2 p) {
-    return mix(mix(h.w, h.z, p.x), mix(h.x, h.y, p.x), p.y);
+    vec2 west_east = mix(h.wz, h.xy, p.y);
+    return mix(west_east.x, west_east.y, p.x);
 }
+
+// twist — how far the fourth corner is out of the plane of the others: the coefficient of u v.
+float twist(vec4 h) { return h.w - h.z - h.x + h.y; }
 
 // first_crossing — where f(s) = a s^2 + b s + c first falls to 0 in [0, 1], given f(0) = above and
 //                  f(1) = below; 2 if it does not.
@@ -83,128 +89,96 @@ float first_crossing(float above, float below, float curve) {
     return below > 0.0 && s > 1.0 ? 2.0 : clamp(s, 0.0, 1.0);
 }
 
-// trace_field
+// The part of a ray that can meet something, and what its walk needs again and again.
+struct Span {
+    vec2 o, d;        // columns and rows; no component of d is 0
+    vec2 inverse;     // 1 / d
+    float oz, dz;     // height
+    float t, t_end;   // begin and end [m]
+    float slack;      // rounding of oz + t dz anywhere in the span [m], doubled
+    ivec2 ahead;      // 1 where a cell's far border is the upper one, else 0
+    ivec2 stride;     // +1 or -1
+};
+
+// clip_ray — cut to the field's sides, its highest node and the bottom of the block of earth.
 //
-//   heights     RG16, ground and water codes; water code 0 = none
-//   maxima      RG32F, level L in mip level 2 (L - 1); red: ground, green: water (-1e30: none)
-//   t_max       [m]; the walk ends there without a hit
-//   with_water  stop at the water's surface too (only from above)
-//   returns     true with `hit` filled in
-bool trace_field(sampler2D heights, sampler2D maxima, Field field, Ray ray, float t_max,
-                 bool with_water, out Hit hit) {
-    vec2 o = ray.origin.xy;
-    vec2 d = ray.direction.xy;
-    vec2 low = vec2(-ray.base), high = vec2(field.cells - ray.base);
-    bvec2 still = lessThan(abs(d), vec2(1e-12)); // never leaves its column or row: must be over the field
-    if ((still.x && (o.x < low.x || o.x > high.x)) || (still.y && (o.y < low.y || o.y > high.y)))
-        return false;
-    d = mix(d, vec2(d.x < 0.0 ? -1e-12 : 1e-12, d.y < 0.0 ? -1e-12 : 1e-12),
-            lessThan(abs(d), vec2(1e-12)));
-    vec2 inverse = 1.0 / d;
+//   returns  false if nothing is left
+bool clip_ray(Field field, Ray ray, float t_max, out Span span) {
+    vec2 o = ray.origin.xy, d = ray.direction.xy;
     float oz = ray.origin.z, dz = ray.direction.z;
-
-    vec2 t_low = (low - o) * inverse, t_high = (high - o) * inverse;
+    // A ray that never leaves its column or row creeps: 1e-12 cells a metre change no answer, and it is
+    // over the field at once or, for all purposes, never.
+    d = vec2(abs(d.x) < 1e-12 ? 1e-12 : d.x, abs(d.y) < 1e-12 ? 1e-12 : d.y);
+    vec2 inverse = 1.0 / d;
+    vec2 t_low = (vec2(-ray.base) - o) * inverse, t_high = (vec2(field.cells - ray.base) - o) * inverse;
     vec2 t_first = min(t_low, t_high), t_last = max(t_low, t_high);
-    float t = max(0.0, max(t_first.x, t_first.y));
+    float t = max(ray.begin, max(t_first.x, t_first.y));
     float t_end = min(t_max, min(t_last.x, t_last.y));
-    // Rounding of oz + t dz: a block is only skipped if it is missed by more than this.
+    // Nothing is higher than the highest node or lower than the bottom. The slab is widened by the
+    // rounding of oz + t dz: ground is only passed over if it is missed by more than this.
     float slack = 3e-7 * (abs(oz) + abs(dz) * max(t_end, 0.0)) + 1e-6;
-    float ceiling = field.top_m + slack;
-    if (dz < 0.0)
-        t = max(t, (ceiling - oz) / dz);
-    else if (oz > ceiling)
+    float to_top = field.top_m + slack - oz, to_bottom = field.bottom_m - oz;
+    if (abs(dz) > 1e-12) {
+        float rise = 1.0 / dz;
+        float t_top = to_top * rise, t_bottom = to_bottom * rise;
+        t = max(t, min(t_top, t_bottom));
+        t_end = min(t_end, max(t_top, t_bottom));
+    } else if (to_top < 0.0 || to_bottom > 0.0) {
         return false;
-    else if (dz > 0.0)
-        t_end = min(t_end, (ceiling - oz) / dz);
-    // Nor is there anything below the bottom.
-    if (dz > 0.0)
-        t = max(t, (field.bottom_m - oz) / dz);
-    else if (oz < field.bottom_m)
-        return false;
-    else if (dz < 0.0)
-        t_end = min(t_end, (field.bottom_m - oz) / dz);
-    slack = 3e-7 * (abs(oz) + abs(dz) * max(t_end, 0.0)) + 1e-6;
-    if (!(t < t_end))
-        return false;
-
-    ivec2 ahead = ivec2(greaterThan(d, vec2(0.0))); // 1 where the far border is the upper one
-    ivec2 stride = 2 * ahead - 1;
-    // Blocks of 64 cells to begin with: most rays would only descend through the larger ones. Those
-    // that fly far climb to them by themselves.
-    int level = min(field.root, 3);
-    ivec2 block = clamp(ivec2(floor(o + t * d)) + ray.base, ivec2(0), field.cells - 1) >> (2 * level);
-    bool near_water = false; // is there any water in the block of 4 x 4 cells
-
-    for (int i = 0; i < field.step_limit; ++i) {
-        vec2 border = vec2(((block + ahead) << (2 * level)) - ray.base);
-        vec2 t_border = (border - o) * inverse;
-        float t_out = min(min(t_border.x, t_border.y), t_end);
-        float lowest = oz + (dz < 0.0 ? t_out : t) * dz;
-
-        if (level > 0) {
-            vec2 highest = texelFetch(maxima, block, 2 * (level - 1)).rg;
-            float top = with_water ? max(highest.r, highest.g) : highest.r;
-            if (lowest <= top + slack) {
-                --level;
-                near_water = with_water && highest.g > -1e29;
-                ivec2 child = (ivec2(floor(o + t * d)) + ray.base) >> (2 * level);
-                block = clamp(child, block * 4, block * 4 + 3);
-                block = min(block, (field.cells - 1) >> (2 * level));
-                continue;
-            }
-        } else {
-            vec2 middle = (vec2(block) + 1.0) * field.texel;
-            vec4 ground = textureGather(heights, middle, 0) * field.ground_m.y + field.ground_m.x;
-            float highest = max(max(ground.x, ground.y), max(ground.z, ground.w));
-            vec4 water = vec4(0.0);
-            bool wet = false;
-            if (near_water) {
-                vec4 code = textureGather(heights, middle, 1);
-                wet = all(greaterThan(code, vec4(0.0)));
-                water = code * field.water_m.y + field.water_m.x;
-                if (wet)
-                    highest = max(highest, max(max(water.x, water.y), max(water.z, water.w)));
-            }
-            if (lowest <= highest + slack) {
-                vec2 p_in = clamp(o + t * d - vec2(block - ray.base), 0.0, 1.0);
-                vec2 p_out = clamp(o + t_out * d - vec2(block - ray.base), 0.0, 1.0);
-                float z_in = oz + t * dz, z_out = oz + t_out * dz;
-                vec2 run = p_out - p_in;
-                float bend = -run.x * run.y;
-                float s = first_crossing(z_in - bilinear(ground, p_in), z_out - bilinear(ground, p_out),
-                                         bend * (ground.w - ground.z - ground.x + ground.y));
-                bool at_water = false;
-                if (wet) {
-                    float s_water =
-                        first_crossing(z_in - bilinear(water, p_in), z_out - bilinear(water, p_out),
-                                       bend * (water.w - water.z - water.x + water.y));
-                    at_water = s_water < s;
-                    s = min(s, s_water);
-                }
-                if (s <= 1.0) {
-                    hit.t = t + s * max(t_out - t, 0.0);
-                    hit.water = at_water;
-                    hit.cell = block;
-                    hit.inside = p_in + s * run;
-                    return true;
-                }
-            }
-        }
-        if (t_out >= t_end)
-            return false;
-        t = max(t, t_out);
-        ivec2 next = block;
-        if (t_border.x < t_border.y)
-            next.x += stride.x;
-        else
-            next.y += stride.y;
-        // Up one level whenever the parent is left; its number follows from the child's.
-        if (level < field.root && (next >> 2) != (block >> 2)) {
-            ++level;
-            block = next >> 2;
-        } else {
-            block = next;
-        }
     }
-    return false;
+    slack = 3e-7 * (abs(oz) + abs(dz) * max(t_end, 0.0)) + 1e-6;
+    ivec2 ahead = ivec2(greaterThan(d, vec2(0.0)));
+    span = Span(o, d, inverse, oz, dz, t, t_end, slack, ahead, 2 * ahead - 1);
+    return t < t_end;
+}
+
+// cell_at — the cell over which a ray is after t metres; the nearest one of the field.
+ivec2 cell_at(Field field, Ray ray, Span span, float t) {
+    return clamp(ivec2(floor(span.o + t * span.d)) + ray.base, ivec2(0), field.cells - 1);
+}
+
+// borders — path lengths at which the ray leaves a block of cells through its sides across columns
+//           and across rows; blocks are 2^shift cells a side.
+vec2 borders(Ray ray, Span span, ivec2 block, int shift) {
+    return (vec2(((block + span.ahead) << shift) - ray.base) - span.o) * span.inverse;
+}
+
+// meet_cell — first hit within one cell, between path lengths t and t_out.
+//
+//   codes    R32UI view of the heights: ground in the lower 16 bits, water in the upper ones, so that
+//            one gather fetches both surfaces' four nodes
+//   wet      whether there may be water to stop at
+//   returns  true with `hit` filled in
+bool meet_cell(usampler2D codes, Field field, Ray ray, Span span, ivec2 cell, float t, float t_out, bool wet,
+               out Hit hit) {
+    // Corners in gather order: (0,1) (1,1) (1,0) (0,0), columns and rows.
+    uvec4 code = textureGather(codes, (vec2(cell) + 1.0) * field.texel);
+    vec4 ground = vec4(code & 0xffffu) * field.ground_m.y + field.ground_m.x;
+    float highest = max(max(ground.x, ground.y), max(ground.z, ground.w));
+    code >>= 16;
+    wet = wet && all(greaterThan(code, uvec4(0u)));
+    vec4 water = vec4(0.0);
+    if (wet) {
+        water = vec4(code) * field.water_m.y + field.water_m.x;
+        highest = max(highest, max(max(water.x, water.y), max(water.z, water.w)));
+    }
+    float z_in = span.oz + t * span.dz, z_out = span.oz + t_out * span.dz;
+    if (min(z_in, z_out) > highest + span.slack)
+        return false;
+    vec2 corner = vec2(cell - ray.base);
+    vec2 p_in = clamp(span.o + t * span.d - corner, 0.0, 1.0);
+    vec2 p_out = clamp(span.o + t_out * span.d - corner, 0.0, 1.0);
+    vec2 run = p_out - p_in;
+    float bend = -run.x * run.y;
+    float s = first_crossing(z_in - bilinear(ground, p_in), z_out - bilinear(ground, p_out), bend * twist(ground));
+    bool at_water = false;
+    if (wet) {
+        float s_water = first_crossing(z_in - bilinear(water, p_in), z_out - bilinear(water, p_out), bend * twist(water));
+        at_water = s_water < s;
+        s = min(s, s_water);
+    }
+    if (s > 1.0)
+        return false;
+    hit = Hit(t + s * max(t_out - t, 0.0), at_water, cell, p_in + s * run);
+    return true;
 }

@@ -1,12 +1,14 @@
 #version 450 core
 // passes/primary.comp — part 0 of every path: from the camera to the first surface.
-// Reads heights and maxima; writes hits 0 and, for the first sample, distances. One invocation a pixel
+// Reads heights and bounds; writes hits 0 and, for the first sample, distances. One invocation a pixel
 // of the tile. Only walks: see lib/parts.glsl.
 #include "lib/parts.glsl"
+#include "lib/walk.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
-layout(binding = TARN_TEXTURE_MAXIMA) uniform sampler2D maxima;
+layout(binding = TARN_TEXTURE_CODES) uniform usampler2D codes;
+layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;
+layout(binding = TARN_TEXTURE_BEAMS) uniform sampler2D beams;
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
 layout(binding = TARN_BUFFER_LAKES, std430) readonly buffer Lakes { vec4 lakes[]; };
 layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform writeonly uimage2D hits;
@@ -36,8 +38,10 @@ void main() {
     float limit = reach(view, part);
     Hit hit;
     bool found = false;
+    Ray ray = ray_of(view, part);
+    ray.begin = texelFetch(beams, pixel >> 3, 0).r;
     if (!part.in_water || part.bed_known)
-        found = trace_field(heights, maxima, field_of(view), ray_of(view, part), limit, !part.in_water, hit);
+        found = trace_field(codes, bounds, field_of(view), ray, limit, !part.in_water, hit);
     End end = End(limit, ivec2(0), vec2(0.0), 0u);
     if (found) {
         end = End(hit.t, hit.cell, hit.inside, hit.water ? end_surface : end_ground);

@@ -4,7 +4,7 @@
 #include "shared/view_block.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = TARN_TEXTURE_MAXIMA) uniform sampler2D finer;
+layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D finer;
 layout(binding = TARN_IMAGE_MAXIMA, rg32f) uniform writeonly image2D coarser;
 layout(location = 0) uniform int source_level;
 

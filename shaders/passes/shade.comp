@@ -48,14 +48,14 @@ vec3 sun_irradiance_below(vec3 below) {
 vec3 ground_radiance(Part part, End end, float path_m) {
     Field field = field_of(view);
     float z = part.origin.z + end.t * part.direction.z;
-    vec4 corners = textureGather(heights, (vec2(end.cell) + 1.0) * field.texel, 0) * field.ground_m.y;
+    vec4 corners = textureGather(heights, (vec2(end.cell) + 1.0) * field.texel, 0) * view.heights.y;
     if (!part.in_water && z < bilinear(corners, end.inside) - view.options.x) {
         // The side of the block that the scene is cut out of.
         vec3 earth = view.look.w < 0.0 ? vec3(0.19, 0.155, 0.115) : vec3(view.look.w);
         float rise = normalize(vec3(-part.direction.xy, 0.5)).z;
         return earth * inverse_pi * view.sky_irradiance.rgb * (0.5 + 0.5 * rise);
     }
-    vec2 gradient = ground_gradient(heights, field.nodes, end.cell, end.inside, field.ground_m.y);
+    vec2 gradient = ground_gradient(heights, field.nodes, end.cell, end.inside, view.heights.y);
     vec3 normal = normal_of(gradient, view.grid.z);
     vec3 albedo = vec3(view.look.w);
     if (view.look.w < 0.0) {

@@ -18,12 +18,15 @@ using ivec4 = glm::ivec4;
 #define TARN_BLOCK_VIEW 0     // uniform block ViewBlock
 #define TARN_BUFFER_LAKES 0   // storage buffer of vec4: x level [m, block heights], y 1 = bed known
 #define TARN_TEXTURE_HEIGHTS 0 // RG16: ground and water codes, one texel a node
-#define TARN_TEXTURE_MAXIMA 1  // RG32F: block maxima of the ground and of the water
+#define TARN_TEXTURE_BOUNDS 1  // what the walk skips by: see its file in lib/walks
 #define TARN_TEXTURE_SKY 2     // RGBA32F: sky radiance
 #define TARN_TEXTURE_ORTHO 3   // SRGB8_ALPHA8: orthophoto
+#define TARN_TEXTURE_CODES 5   // R32UI view of the heights: ground in the lower, water in the upper half
+#define TARN_TEXTURE_BEAMS 4   // R32F: free path of each tile of 8 x 8 pixels [m]
 #define TARN_IMAGE_RADIANCE 0  // rgba32f
 #define TARN_IMAGE_DISTANCE 1  // r32f
 #define TARN_IMAGE_MAXIMA 2    // rg32f, written level of the maxima
+#define TARN_IMAGE_BEAMS 6     // r32f
 #define TARN_IMAGE_HITS 3      // 3, 4, 5: rgba32ui, one image for each part of a path (lib/parts.glsl)
 
 #define TARN_FLAG_SHADOWS 1u
@@ -55,11 +58,14 @@ struct ViewBlock {
                           // z: 1 if that lake's bed is known, w: weight of this sample
     vec4 offset;          // xy: position inside the pixel, z: index of the sample, w: -
     uvec4 counts;         // x: width, y: height [px], z: flags, w: lakes
-    ivec4 walk;           // x: level of the root block, y: limit of steps, zw: node by the camera
+    ivec4 walk;           // x: level of the root block, y: cone map's blocks are 2^y cells a side,
+                          // zw: node by the camera
     ivec4 tile;           // xy: first pixel, zw: size of the tile being drawn
+    vec4 bounds;          // cone map, metres per unit texel: x: of the ground, y: of the surface;
+                          // z: setting of the walk, w: -
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewBlock) == 304 && offsetof(ViewBlock, tile) == 288, "std140 layout");
+static_assert(sizeof(ViewBlock) == 320 && offsetof(ViewBlock, tile) == 288, "std140 layout");
 } // namespace tarn::shared
 #endif

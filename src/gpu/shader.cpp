@@ -25,7 +25,7 @@ std::string read_text(const fs::path& path, const std::string& asked_by) {
 }
 
 void paste(const fs::path& root, const std::string& file, const std::string& body,
-           ShaderSource& out) {
+           const std::map<std::string, std::string>& replaced, ShaderSource& out) {
     static const std::regex include(R"re(^\s*#include\s+"([^"]+)"\s*$)re");
     const auto index = out.files.size();
     out.files.push_back(file);
@@ -39,9 +39,11 @@ void paste(const fs::path& root, const std::string& file, const std::string& bod
             out.code += line + "\n";
             continue;
         }
-        const std::string wanted = match[1];
+        const auto other = replaced.find(match[1]);
+        const std::string wanted = other == replaced.end() ? match[1].str() : other->second;
         if (std::find(out.files.begin(), out.files.end(), wanted) == out.files.end())
-            paste(root, wanted, read_text(root / wanted, text(file, ":", number)), out);
+            paste(root, wanted, read_text(root / wanted, text(file, ":", number)), replaced,
+                  out);
         out.code += text("#line ", number + 1, " ", index, "\n");
     }
 }
@@ -70,14 +72,16 @@ fs::path shader_root() {
                 "set TARN_SHADERS to the folder that holds lib and passes");
 }
 
-ShaderSource expand_shader(const fs::path& root, const std::string& code, const std::string& name) {
+ShaderSource expand_shader(const fs::path& root, const std::string& code, const std::string& name,
+                           const std::map<std::string, std::string>& replaced) {
     ShaderSource out;
-    paste(root, name, code, out);
+    paste(root, name, code, replaced, out);
     return out;
 }
 
-ShaderSource load_shader(const fs::path& root, const std::string& entry) {
-    return expand_shader(root, read_text(root / entry, "the program"), entry);
+ShaderSource load_shader(const fs::path& root, const std::string& entry,
+                         const std::map<std::string, std::string>& replaced) {
+    return expand_shader(root, read_text(root / entry, "the program"), entry, replaced);
 }
 
 std::string name_files(const std::string& driver_log, const ShaderSource& source) {

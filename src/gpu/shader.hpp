@@ -3,6 +3,7 @@
 #include "gpu/objects.hpp"
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,13 +19,16 @@ struct ShaderSource {
 std::filesystem::path shader_root();
 
 /// Pastes each included file once, so libraries need no include guards.
-/// @param entry  relative to root, e.g. "passes/trace.comp"
+/// @param entry     relative to root, e.g. "passes/trace.comp"
+/// @param replaced  includes of the first file get the second instead
 /// @throws tarn::Error  if a file is missing; names the file and line that asked for it
-ShaderSource load_shader(const std::filesystem::path& root, const std::string& entry);
+ShaderSource load_shader(const std::filesystem::path& root, const std::string& entry,
+                         const std::map<std::string, std::string>& replaced = {});
 
 /// As load_shader(), for code written in memory (used by the GPU function tests).
 ShaderSource expand_shader(const std::filesystem::path& root, const std::string& code,
-                           const std::string& name);
+                           const std::string& name,
+                           const std::map<std::string, std::string>& replaced = {});
 
 /// Rewrites driver messages "N(L)" / "N:L(" to "lib/fresnel.glsl:L", so that editors can jump
 /// there.

@@ -16,26 +16,12 @@ GLuint groups(int items) { return static_cast<GLuint>((items + 7) / 8); }
 /// Pixels of a tile at most: what the passes hand to each other takes 48 bytes a pixel.
 constexpr int tile_pixels = 1 << 22;
 
-int next_power_of_two(int n) {
-    int p = 1;
-    while (p < n)
-        p *= 2;
-    return p;
-}
-
 } // namespace
 
 Renderer::Renderer(const scene::Scene& scene)
-    : scene_(scene), view_buffer_(sizeof(shared::ViewBlock), nullptr) {
-    const auto root = gpu::shader_root();
-    block_maxima_ = gpu::ComputeProgram(gpu::load_shader(root, "passes/block_maxima.comp"));
-    reduce_maxima_ = gpu::ComputeProgram(gpu::load_shader(root, "passes/reduce_maxima.comp"));
-    primary_ = gpu::ComputeProgram(gpu::load_shader(root, "passes/primary.comp"));
-    secondary_ = gpu::ComputeProgram(gpu::load_shader(root, "passes/secondary.comp"));
-    shadow_ = gpu::ComputeProgram(gpu::load_shader(root, "passes/shadow.comp"));
-    shade_ = gpu::ComputeProgram(gpu::load_shader(root, "passes/shade.comp"));
+    : scene_(scene), view_buffer_(sizeof(shared::ViewBlock), nullptr), bounds_(scene, heights_) {
+    shade_ = gpu::ComputeProgram(gpu::load_shader(gpu::shader_root(), "passes/shade.comp"));
     upload_scene();
-    build_maxima();
 }
 
 void Renderer::upload_scene() {
@@ -50,6 +36,9 @@ void Renderer::upload_scene() {
         packed[2 * i + 1] = water.codes.values[i];
     }
     heights_.upload(GL_RG, GL_UNSIGNED_SHORT, packed.data());
+    codes_ = heights_.view_as(GL_R32UI, "height codes");
+    heights_bytes_ = packed.size() * sizeof packed[0];
+    block_.walk = {FieldBounds::root_level(size), FieldBounds::cone_shift, 0, 0};
 
     // Heights on the GPU count from the ground's offset: float32 then resolves a fraction of a
     // code even for relief at some kilometres of altitude.
@@ -88,41 +77,33 @@ void Renderer::upload_scene() {
     gpu::check_gl("uploading the scene");
 }
 
-void Renderer::build_maxima() {
-    const int cells = std::max(int(block_.grid.x), int(block_.grid.y)) - 1;
-    root_level_ = 1;
-    while ((1 << (2 * root_level_)) < cells)
-        ++root_level_;
-    const int wide = next_power_of_two((int(block_.grid.x) - 1 + 3) / 4);
-    const int high = next_power_of_two((int(block_.grid.y) - 1 + 3) / 4);
-    const int levels = 2 * (root_level_ - 1) + 1;
-    // The root's one texel must exist: pad the longer side up to a power of four blocks.
-    const int side = 1 << (2 * (root_level_ - 1));
-    const int w = wide >= high ? std::max(wide, side) : wide;
-    const int h = high > wide ? std::max(high, side) : high;
-    maxima_ = gpu::Texture2D(GL_RG32F, w, h, levels, gpu::Filter::nearest, "block maxima");
-    block_.walk = {root_level_, int(8 * (block_.grid.x + block_.grid.y) + 256), 0, 0};
-    view_buffer_.write(&block_, sizeof block_);
-    bind_field();
-    block_maxima_.use();
-    maxima_.bind_image(TARN_IMAGE_MAXIMA, GL_WRITE_ONLY, 0);
-    glDispatchCompute(groups(w), groups(h), 1);
-    reduce_maxima_.use();
-    for (int level = 0; level + 1 < levels; ++level) {
-        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-        maxima_.bind_image(TARN_IMAGE_MAXIMA, GL_WRITE_ONLY, level + 1);
-        glUniform1i(0, level);
-        glDispatchCompute(groups(std::max(1, w >> (level + 1))),
-                          groups(std::max(1, h >> (level + 1))), 1);
-    }
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-    gpu::check_gl("building the block maxima");
+void Renderer::use_walk(const scene::RenderSettings& settings) {
+    walk_ = settings.walk;
+    const scene::WalkMethod& method = scene::walk_method(walk_);
+    block_.bounds.z = float(settings.walk_setting > 0.0 ? settings.walk_setting : method.default_setting);
+    if (passes_.count(walk_))
+        return;
+    std::string file = method.name;
+    std::replace(file.begin(), file.end(), '-', '_');
+    const auto root = gpu::shader_root();
+    const auto pass = [&](const char* name) {
+        return gpu::ComputeProgram(gpu::load_shader(root, text("passes/", name, ".comp"),
+                                                    {{"lib/walks/cone_map.glsl", "lib/walks/" + file + ".glsl"}}));
+    };
+    passes_.emplace(walk_, WalkPasses{pass("beams"), pass("primary"), pass("secondary"), pass("shadow"), pass("first_hit")});
 }
 
-void Renderer::bind_field() const {
+void Renderer::bind_walk(bool with_water) { bounds_.bind(walk_, with_water); }
+
+void Renderer::bind_field(scene::Walk walk, bool with_water) {
+    bounds_.prepare(walk, with_water);
+    block_.bounds.x = float(bounds_.ground_cone_m());
+    block_.bounds.y = float(bounds_.surface_cone_m());
+    view_buffer_.write(&block_, sizeof block_);
     glBindBufferBase(GL_UNIFORM_BUFFER, TARN_BLOCK_VIEW, view_buffer_.id());
     heights_.bind(TARN_TEXTURE_HEIGHTS);
-    maxima_.bind(TARN_TEXTURE_MAXIMA);
+    codes_.bind(TARN_TEXTURE_CODES);
+    bounds_.bind(walk, with_water);
 }
 
 void Renderer::prepare(const scene::View& view) {
@@ -187,6 +168,9 @@ void Renderer::prepare(const scene::View& view) {
         distance_ = gpu::Texture2D(GL_R32F, settings.width_px, settings.height_px, 1,
                                    gpu::Filter::nearest, "distances");
     }
+    const int tiles_across = (settings.width_px + 7) / 8, tiles_down = (settings.height_px + 7) / 8;
+    if (beams_.width_px() != tiles_across || beams_.height_px() != tiles_down)
+        beams_ = gpu::Texture2D(GL_R32F, tiles_across, tiles_down, 1, gpu::Filter::nearest, "beams");
     // As wide as the picture, as high as the limit allows.
     const int tile_rows =
         std::min(settings.height_px, std::max(8, tile_pixels / settings.width_px));
@@ -196,12 +180,18 @@ void Renderer::prepare(const scene::View& view) {
                                   gpu::Filter::nearest, "hits");
     for (GLuint k = 0; k < 3; ++k)
         hits_[k].bind_image(TARN_IMAGE_HITS + k, GL_READ_WRITE);
-    bind_field();
+    const bool from_above = (flags & TARN_FLAG_UNDER_WATER) == 0;
+    use_walk(settings);
+    if (settings.shadows || settings.reflection || settings.refraction)
+        bounds_.prepare(walk_, false);
+    bind_field(walk_, from_above);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_LAKES, lakes_.id());
     sky_.bind(TARN_TEXTURE_SKY);
     ortho_.bind(TARN_TEXTURE_ORTHO);
     radiance_.bind_image(TARN_IMAGE_RADIANCE, GL_READ_WRITE);
     distance_.bind_image(TARN_IMAGE_DISTANCE, GL_WRITE_ONLY);
+    beams_.bind(TARN_TEXTURE_BEAMS);
+    beams_.bind_image(TARN_IMAGE_BEAMS, GL_WRITE_ONLY);
     set_sample(0, 1);
     gpu::check_gl("preparing the picture");
 }
@@ -218,16 +208,19 @@ void Renderer::draw_tile() {
     constexpr GLbitfield images = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
     const bool split = (block_.counts.z & (TARN_FLAG_REFLECTION | TARN_FLAG_REFRACTION)) != 0;
     glMemoryBarrier(images);
-    primary_.use();
+    const WalkPasses& pass = passes_.at(walk_);
+    bind_walk((block_.counts.z & TARN_FLAG_UNDER_WATER) == 0); // only from above is water met
+    pass.primary.use();
     glDispatchCompute(across, down, 1);
     glMemoryBarrier(images);
+    bind_walk(false);
     if (split) {
-        secondary_.use();
+        pass.secondary.use();
         glDispatchCompute(across, down, 2);
         glMemoryBarrier(images);
     }
     if ((block_.counts.z & TARN_FLAG_SHADOWS) != 0 && block_.sun.z > 0.0f) {
-        shadow_.use();
+        pass.shadow.use();
         glDispatchCompute(across, down, split ? 3 : 1);
         glMemoryBarrier(images);
     }
@@ -235,9 +228,34 @@ void Renderer::draw_tile() {
     glDispatchCompute(across, down, 1);
 }
 
+void Renderer::find_beams() {
+    passes_.at(walk_).beams.use();
+    glDispatchCompute(GLuint((beams_.width_px() + 7) / 8), GLuint((beams_.height_px() + 3) / 4), 1);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+void Renderer::find_first_hits() {
+    view_buffer_.write(&block_, sizeof block_);
+    bind_walk((block_.counts.z & TARN_FLAG_UNDER_WATER) == 0);
+    find_beams();
+    passes_.at(walk_).first_hit.use();
+    glDispatchCompute(groups(int(block_.counts.x)), groups(int(block_.counts.y)), 1);
+}
+
+std::vector<float> Renderer::read_first_hits() const {
+    std::vector<float> out(std::size_t(distance_.width_px()) * std::size_t(distance_.height_px()));
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    distance_.download(GL_RED, GL_FLOAT, out.data(), out.size() * sizeof(float));
+    gpu::check_gl("reading first hits");
+    return out;
+}
+
 void Renderer::draw_once() {
     const int width = int(block_.counts.x), height = int(block_.counts.y),
               rows = hits_[0].height_px();
+    view_buffer_.write(&block_, sizeof block_);
+    bind_walk((block_.counts.z & TARN_FLAG_UNDER_WATER) == 0);
+    find_beams();
     for (int top = 0; top < height; top += rows) {
         block_.tile = {0, top, width, std::min(rows, height - top)};
         draw_tile();

@@ -4,18 +4,21 @@
 #include "gpu/context.hpp"
 #include "gpu/objects.hpp"
 #include "gpu/shader.hpp"
+#include "render/field_bounds.hpp"
 #include "scene/settings.hpp"
 
 #include "shared/view_block.h"
 
 #include <functional>
+#include <map>
+#include <vector>
 
 namespace tarn::render {
 
 /// Holds one scene on the GPU and draws views of it. The context must stay current.
 class Renderer {
 public:
-    /// Uploads the scene and builds its block maxima.
+    /// Uploads the scene.
     /// @throws tarn::Error  if the field is larger than the device's textures, or memory runs out
     explicit Renderer(const scene::Scene& scene);
 
@@ -29,23 +32,46 @@ public:
     /// Uploads camera, light and settings, and makes the target images.
     void prepare(const scene::View& view);
 
-    /// Binds heights, maxima and the view block, for a program of one's own (tests).
-    void bind_field() const;
+    /// Distance to what each pixel's ray meets first, > 0 ground, < 0 water, 0 nothing, left on the
+    /// GPU. Call prepare() first.
+    void find_first_hits();
+    std::vector<float> read_first_hits() const;
+
+    /// Binds heights, the bounds of a walk and the view block, for a program of one's own (tests).
+    void bind_field(scene::Walk walk, bool with_water);
+
+    /// Memory of the heights and of all bounds made so far.
+    std::size_t field_bytes() const { return heights_bytes_ + bounds_.bytes(); }
+    /// For experiments: cells a side of the cone map's blocks, 2^shift. Before the first prepare().
+    void set_cone_shift(int shift) {
+        bounds_.shift = shift;
+        block_.walk.y = shift;
+    }
 
 private:
+    /// The passes that walk, with one method in them.
+    struct WalkPasses {
+        gpu::ComputeProgram beams, primary, secondary, shadow, first_hit;
+    };
+
     void upload_scene();
-    void build_maxima();
+    void use_walk(const scene::RenderSettings& settings);
+    void bind_walk(bool with_water);
+    void find_beams();
     void set_sample(int sample, int samples);
     void draw_tile();
 
     const scene::Scene& scene_;
     shared::ViewBlock block_{};
-    int root_level_ = 1;
-    gpu::Texture2D heights_, maxima_, sky_, ortho_, radiance_, distance_;
+    gpu::Texture2D heights_, codes_, sky_, ortho_, radiance_, distance_, beams_;
     gpu::Texture2D
         hits_[3]; ///< ends of the parts of the paths of one tile (shaders/lib/parts.glsl)
     gpu::Buffer view_buffer_, lakes_;
-    gpu::ComputeProgram block_maxima_, reduce_maxima_, primary_, secondary_, shadow_, shade_;
+    gpu::ComputeProgram shade_;
+    FieldBounds bounds_;
+    std::map<scene::Walk, WalkPasses> passes_;
+    scene::Walk walk_ = scene::Walk::cone_map;
+    std::size_t heights_bytes_ = 0;
     int samples_ = 1;
 };
 

@@ -1,5 +1,7 @@
 #include "scene/samples.hpp"
 
+#include "core/parallel.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -14,10 +16,12 @@ Scene fill(const std::function<double(double, double)>& height, int side, double
     Scene scene;
     std::vector<float> z(std::size_t(side) * std::size_t(side));
     const double s = 2.0 * half_m / (side - 1);
-    for (int row = 0; row < side; ++row)
-        for (int col = 0; col < side; ++col)
-            z[std::size_t(row) * std::size_t(side) + std::size_t(col)] =
-                static_cast<float>(height(-half_m + col * s, half_m - row * s));
+    share_out(side, 0, [&](int first, int last) {
+        for (int row = first; row < last; ++row)
+            for (int col = 0; col < side; ++col)
+                z[std::size_t(row) * std::size_t(side) + std::size_t(col)] =
+                    static_cast<float>(height(-half_m + col * s, half_m - row * s));
+    });
     scene.ground = quantise(z, {side, side}, s, 4);
     scene.ground.west_m = -half_m;
     scene.ground.north_m = half_m;

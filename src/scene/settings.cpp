@@ -25,6 +25,21 @@ void RenderSettings::validate() const {
         require_range("ground albedo", *ground_albedo, 0.0, 1.0);
 }
 
+const std::vector<WalkMethod>& walk_methods() {
+    static const std::vector<WalkMethod> methods = {
+        {Walk::cone_map, "cone-map", "after Dummer 2006, made exact", true, 0, ""},
+        {Walk::maximum_mipmap, "maximum-mipmap", "after Tevs et al. 2008", true, 0, ""},
+        {Walk::grid, "grid", "Amanatides & Woo 1987", true, 0, ""},
+    };
+    return methods;
+}
+
+const WalkMethod& walk_method(Walk walk) {
+    const auto& methods = walk_methods();
+    return *std::find_if(methods.begin(), methods.end(),
+                         [&](const WalkMethod& m) { return m.walk == walk; });
+}
+
 glm::dvec2 sample_offset(int index, int count) {
     if (count == 1)
         return {0.5, 0.5};

@@ -6,10 +6,37 @@
 
 #include <glm/vec2.hpp>
 #include <optional>
+#include <vector>
 
 namespace tarn::scene {
 
 enum class Fresnel { exact, schlick };
+
+/// How a ray's first hit with the field is found. docs/intersection.md compares them; each is
+/// described at the head of its file in shaders/lib/walks.
+enum class Walk {
+    cone_map,        ///< exact
+    maximum_mipmap,  ///< exact
+    grid,            ///< exact, every cell
+    safety_exact,    ///< exact
+    safety_radius,   ///< Baboud & Decoret 2006
+    uniform_steps,   ///< Policarpo et al. 2005
+    direction_steps, ///< Tatarchuk 2006
+    relaxed_cone,    ///< Policarpo & Oliveira 2007
+};
+
+struct WalkMethod {
+    Walk walk;
+    const char* name;       ///< as typed and shown
+    const char* source;     ///< who described it
+    bool exact;             ///< misses nothing, invents nothing
+    double default_setting; ///< steps of the methods that have a number of them, else 0
+    const char* setting;    ///< what the setting means; empty: there is none
+};
+
+/// All methods, the default one first.
+const std::vector<WalkMethod>& walk_methods();
+const WalkMethod& walk_method(Walk walk);
 
 struct RenderSettings {
     int width_px = 1280; ///< [1, 16384]
@@ -21,6 +48,8 @@ struct RenderSettings {
     bool refraction = true;
     double least_transmittance = 0.002;  ///< underwater paths end where less is left, [1e-6, .5]
     std::optional<double> ground_albedo; ///< lab: one grey for all ground, [0, 1]
+    Walk walk = Walk::cone_map;
+    double walk_setting = 0.0; ///< 0: the method's default; else [1, 65536]
 
     /// @throws tarn::Error  naming the field, its value and the legal range
     void validate() const;

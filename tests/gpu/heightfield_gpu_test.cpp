@@ -48,8 +48,9 @@ struct Verdict {
 
 /// Allowed: max(1 quantum, 1e-5 of the distance), both seen along the ray. Where the ray skims a
 /// surface, the place of the hit is as uncertain as its height over the sine between the two.
-Verdict judge(const scene::Scene& scene, std::vector<TestRay> rays, bool with_water) {
-    const auto got = test_support::trace_on_gpu(scene, rays, with_water);
+Verdict judge(const scene::Scene& scene, std::vector<TestRay> rays, bool with_water,
+              scene::Walk walk = scene::Walk::cone_map) {
+    const auto got = test_support::trace_on_gpu(scene, rays, with_water, walk);
     Verdict v;
     const double quantum = scene.ground.scale_m, bottom = scene::block_bottom_m(scene.ground);
     for (std::size_t i = 0; i < rays.size(); ++i) {

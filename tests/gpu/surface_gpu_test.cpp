@@ -11,7 +11,7 @@ using namespace tarn;
 TEST(SurfaceGpu, GradientsAndNormalsAgreeEverywhereIncludingTheEdges) {
     const scene::Scene scene = scene::mountain_lake(67);
     test_support::context();
-    const render::Renderer renderer(scene);
+    render::Renderer renderer(scene);
     std::mt19937 random(8);
     std::uniform_int_distribution<int> cell(0, 65);
     std::uniform_real_distribution<float> inside(0.0f, 1.0f);
@@ -25,7 +25,7 @@ TEST(SurfaceGpu, GradientsAndNormalsAgreeEverywhereIncludingTheEdges) {
              scene.ground.scale_m * 65535.0, "); result = vec4(normal_of(g, ",
              scene.ground.spacing_m, "), length(g));"),
         "layout(binding = 0) uniform sampler2D heights;\n");
-    renderer.bind_field();
+    renderer.bind_field(scene::Walk::cone_map, false);
     const auto got = on_gpu(in);
     for (std::size_t i = 0; i < in.size(); ++i) {
         const glm::dvec2 g =
@@ -40,14 +40,14 @@ TEST(SurfaceGpu, GradientsAndNormalsAgreeEverywhereIncludingTheEdges) {
 TEST(SurfaceGpu, WaterShareIsOneInTheLakeAndZeroAway) {
     const scene::Scene scene = scene::bowl(65);
     test_support::context();
-    const render::Renderer renderer(scene);
+    render::Renderer renderer(scene);
     std::vector<glm::vec4> in = {{32, 32, 0.5f, 0.5f}, {2, 2, 0.5f, 0.5f}};
     for (int col = 0; col < 64; ++col)
         in.emplace_back(col, 32, 0.25f, 0.75f);
     const test_support::GpuFunction on_gpu(
         "lib/surface.glsl", "result.x = water_share(heights, vec2(65.0), ivec2(x.xy), x.zw);",
         "layout(binding = 0) uniform sampler2D heights;\n");
-    renderer.bind_field();
+    renderer.bind_field(scene::Walk::cone_map, false);
     const auto got = on_gpu(in);
     EXPECT_EQ(got[0].x, 1.0f);
     EXPECT_EQ(got[1].x, 0.0f);

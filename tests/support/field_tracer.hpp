@@ -3,6 +3,7 @@
 #include "render/renderer.hpp"
 #include "support/gpu_function.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -23,21 +24,23 @@ struct TestHit {
 /// What float32 makes of the rays on their way to the GPU is put back into `rays`, so that both
 /// tracers are asked the same question.
 inline std::vector<TestHit> trace_on_gpu(const scene::Scene& scene, std::vector<TestRay>& rays,
-                                         bool with_water, double t_max = 1e9) {
+                                         bool with_water,
+                                         scene::Walk walk = scene::Walk::cone_map) {
     context();
-    const render::Renderer renderer(scene);
+    render::Renderer renderer(scene);
+    std::string file = scene::walk_method(walk).name;
+    std::replace(file.begin(), file.end(), '-', '_');
     const GpuFunction trace(
-        "lib/heightfield.glsl",
+        "lib/walks/" + file + ".glsl",
         text("Hit hit; Ray ray = ray_from(ivec2(0), x.xyz, y.xyz, view.grid.z); bool found = "
-             "trace_field(heights, "
-             "maxima, field_of(view), ray, float(",
-             t_max, "), ", with_water ? "true" : "false",
+             "trace_field(codes, "
+             "bounds, field_of(view), ray, 1e9, ", with_water ? "true" : "false",
              ", hit);\n    if (found) result = vec4(hit.t, hit.water ? 2.0 : 1.0, "
              "float(hit.cell.x) + hit.inside.x, float(hit.cell.y) + hit.inside.y);"),
-        "layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;\n"
-        "layout(binding = TARN_TEXTURE_MAXIMA) uniform sampler2D maxima;\n"
+        "layout(binding = TARN_TEXTURE_CODES) uniform usampler2D codes;\n"
+        "layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;\n"
         "layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };\n");
-    renderer.bind_field();
+    renderer.bind_field(walk, with_water);
     const Heightfield& g = scene.ground;
     std::vector<glm::vec4> origins, directions;
     for (TestRay& ray : rays) {

@@ -1,0 +1,56 @@
+// lib/walks/maximum_mipmap.glsl — exact: over a pyramid of block maxima, down to the cell.
+//
+// Source   maximum mipmaps (Tevs, Ihrke & Seidel 2008) with blocks of 4 x 4 children, cells counted in
+//          integers, no step length and no epsilon to creep by. Blocks of level L cover 4^L x 4^L cells.
+// Exact    A block is skipped only if the ray stays above its greatest node, raised by the rounding of
+//          the ray's own height: a bilinear surface never exceeds its nodes.
+// Fails    at float32's limits only: docs/limits.md.
+// Bounds   RG32F, level L in mip level 2 (L - 1); red: ground, green: water (-1e30: none).
+#include "lib/heightfield.glsl"
+
+bool trace_field(usampler2D codes, sampler2D bounds, Field field, Ray ray, float t_max, bool with_water, out Hit hit) {
+    Span span;
+    if (!clip_ray(field, ray, t_max, span))
+        return false;
+    float t = span.t;
+    // Blocks of 64 cells to begin with: most rays would only descend through the larger ones. Those
+    // that fly far climb to them by themselves.
+    int level = min(field.root, 3);
+    ivec2 block = cell_at(field, ray, span, t) >> (2 * level);
+    bool near_water = false; // is there any water in the block of 4 x 4 cells
+    for (int i = 8 * (field.cells.x + field.cells.y) + 256; i > 0; --i) {
+        vec2 t_border = borders(ray, span, block, 2 * level);
+        float t_out = min(min(t_border.x, t_border.y), span.t_end);
+        if (level > 0) {
+            float lowest = span.oz + (span.dz < 0.0 ? t_out : t) * span.dz;
+            vec2 highest = texelFetch(bounds, block, 2 * (level - 1)).rg;
+            float top = with_water ? max(highest.r, highest.g) : highest.r;
+            if (lowest <= top + span.slack) {
+                --level;
+                near_water = with_water && highest.g > -1e29;
+                ivec2 child = (ivec2(floor(span.o + t * span.d)) + ray.base) >> (2 * level);
+                block = clamp(child, block * 4, block * 4 + 3);
+                block = min(block, (field.cells - 1) >> (2 * level));
+                continue;
+            }
+        } else if (meet_cell(codes, field, ray, span, block, t, t_out, near_water, hit)) {
+            return true;
+        }
+        if (t_out >= span.t_end)
+            return false;
+        t = max(t, t_out);
+        ivec2 next = block;
+        if (t_border.x < t_border.y)
+            next.x += span.stride.x;
+        else
+            next.y += span.stride.y;
+        // Up one level whenever the parent is left; its number follows from the child's.
+        if (level < field.root && (next >> 2) != (block >> 2)) {
+            ++level;
+            block = next >> 2;
+        } else {
+            block = next;
+        }
+    }
+    return false;
+}

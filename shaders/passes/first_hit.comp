@@ -1,0 +1,30 @@
+#version 450 core
+// passes/first_hit.comp — distance to what each pixel's ray meets first, and nothing else: what the
+// comparison of methods times and judges.
+// Reads heights and bounds; writes distances: > 0 ground, < 0 water, 0 nothing. One invocation a pixel.
+#include "lib/camera.glsl"
+#include "lib/walk.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = TARN_TEXTURE_CODES) uniform usampler2D codes;
+layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;
+layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
+layout(binding = TARN_TEXTURE_BEAMS) uniform sampler2D beams;
+layout(binding = TARN_IMAGE_DISTANCE, r32f) uniform writeonly image2D distance_image;
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(view.counts.xy))))
+        return;
+    vec2 place = (vec2(pixel) + view.offset.xy) / vec2(view.counts.xy);
+    vec3 direction =
+        pixel_direction(view.forward.xyz, view.right.xyz, view.up.xyz, vec2(view.right.w, view.up.w), place);
+    Hit hit;
+    bool from_above = (view.counts.z & TARN_FLAG_UNDER_WATER) == 0u;
+    Ray ray = ray_from(view.walk.zw, view.camera.xyz, direction, view.grid.z);
+    ray.begin = texelFetch(beams, pixel >> 3, 0).r;
+    float t = 0.0;
+    if (trace_field(codes, bounds, field_of(view), ray, 1e9, from_above, hit))
+        t = hit.water ? -hit.t : hit.t;
+    imageStore(distance_image, pixel, vec4(t));
+}

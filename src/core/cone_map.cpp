@@ -1,0 +1,202 @@
+#include "core/cone_map.hpp"
+
+#include "core/parallel.hpp"
+
+#include <cassert>
+#include <cmath>
+
+namespace tarn {
+
+namespace {
+
+using Code = std::uint16_t;
+
+// The inner loops exist twice, for processors with wide integer units and for all others.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define TARN_WIDE __attribute__((target_clones("avx2", "default")))
+#else
+#define TARN_WIDE
+#endif
+
+/// to[i] = max(to[i], from[i] - drop)
+TARN_WIDE void raise(Code* __restrict to, const Code* __restrict from, Code drop, int count) {
+    for (int i = 0; i < count; ++i) {
+        const Code m = from[i] > drop ? from[i] : drop;
+        const Code lowered = static_cast<Code>(m - drop);
+        to[i] = to[i] > lowered ? to[i] : lowered;
+    }
+}
+
+/// to[i] = max(now[i], before[i] - drop, behind[i] - drop)
+TARN_WIDE void spread(Code* __restrict to, const Code* now, const Code* before, const Code* behind,
+                      Code drop, int count) {
+    for (int i = 0; i < count; ++i) {
+        const Code side = before[i] > behind[i] ? before[i] : behind[i];
+        const Code m = side > drop ? side : drop;
+        const Code lowered = static_cast<Code>(m - drop);
+        to[i] = now[i] > lowered ? now[i] : lowered;
+    }
+}
+
+/// max over neighbours i, i + 1
+TARN_WIDE Code greatest_step(const Code* a, const Code* b, int count) {
+    Code greatest = 0;
+    for (int i = 0; i < count; ++i) {
+        const Code high = a[i] > b[i] ? a[i] : b[i], low = a[i] > b[i] ? b[i] : a[i];
+        const Code step = static_cast<Code>(high - low);
+        greatest = greatest > step ? greatest : step;
+    }
+    return greatest;
+}
+
+/// One row against copies of itself shifted by 1, 2, 4, ... nodes: every shift is a sum of those.
+void dilate_row(Code* row, int cols, Code slope, std::vector<Code>& buffers) {
+    const std::size_t n = std::size_t(cols);
+    buffers.assign(6 * n, 0); // two rows, each between two stretches of zeros
+    Code* now = buffers.data() + n;
+    Code* next = buffers.data() + 4 * n;
+    std::copy(row, row + n, now);
+    for (long d = 1; d < cols && d * slope < 65536; d *= 2) {
+        spread(next, now, now - d, now + d, static_cast<Code>(d * slope), cols);
+        std::swap(now, next);
+    }
+    std::copy(now, now + n, row);
+}
+
+/// Heights of the surface in codes of the map.
+Grid<Code> surface_codes(const Heightfield& ground, const Heightfield* water, ConeMap& map,
+                         int threads) {
+    const GridSize size = ground.size();
+    map.offset_m = ground.offset_m;
+    map.scale_m = ground.scale_m;
+    map.highest_m = ground.max_elevation_m();
+    if (!water)
+        return ground.codes;
+    Code wettest = no_water_code;
+    for (const Code code : water->codes.values)
+        wettest = std::max(wettest, code);
+    if (wettest == no_water_code)
+        return ground.codes;
+    map.highest_m = std::max(map.highest_m, water->offset_m + water->scale_m * wettest);
+    // Coarser codes only if water stands higher than the ground's can say.
+    map.scale_m = std::max(map.scale_m, (map.highest_m - map.offset_m) / 65534.0);
+    const bool same = map.scale_m == ground.scale_m;
+    Grid<Code> out(size);
+    share_out(size.rows, threads, [&](int first, int last) {
+        const std::size_t cols = std::size_t(size.cols);
+        for (std::size_t i = std::size_t(first) * cols; i < std::size_t(last) * cols; ++i) {
+            const auto up = [&](double elevation_m) {
+                return static_cast<Code>(std::clamp(
+                    std::ceil((elevation_m - map.offset_m) / map.scale_m), 0.0, 65535.0));
+            };
+            Code code = ground.codes.values[i];
+            if (!same)
+                code = up(ground.offset_m + ground.scale_m * code);
+            if (water->codes.values[i] != no_water_code)
+                code = std::max(code, up(water->offset_m + water->scale_m * water->codes.values[i]));
+            out.values[i] = code;
+        }
+    });
+    return out;
+}
+
+/// Slopes to try, steepest first. The steepest is good for every block: no two neighbouring nodes
+/// differ by more. Finely spaced where most blocks are, coarsely above.
+std::vector<Code> ladder(const Grid<Code>& codes, int threads) {
+    const int cols = codes.size.cols, rows = codes.size.rows;
+    std::vector<Code> greatest(std::size_t(rows), Code{0});
+    share_out(rows, threads, [&](int first, int last) {
+        for (int r = first; r < last; ++r) {
+            const Code* row = &codes.values[std::size_t(r) * std::size_t(cols)];
+            Code most = greatest_step(row, row + 1, cols - 1);
+            if (r + 1 < rows)
+                most = std::max(most, greatest_step(row, row + cols, cols));
+            greatest[std::size_t(r)] = most;
+        }
+    });
+    std::vector<Code> sorted = greatest;
+    std::sort(sorted.begin(), sorted.end());
+    const double steepest = sorted.back(), usual = sorted[sorted.size() / 2];
+    const auto [low, high] = std::minmax_element(codes.values.begin(), codes.values.end());
+    // Less than this never serves: the whole relief is spread over the whole field.
+    const double least = std::max(1.0, double(*high - *low) / (cols + rows));
+    std::vector<Code> out;
+    for (double s = steepest;;) {
+        const Code code = static_cast<Code>(std::ceil(std::max(s, 0.0)));
+        if (out.empty() || code < out.back())
+            out.push_back(code);
+        if (s <= least)
+            break;
+        s *= s > usual ? 0.5 : std::pow(2.0, -0.25);
+    }
+    return out;
+}
+
+} // namespace
+
+ConeMap cone_map(const Heightfield& ground, const Heightfield* water, int shift, int threads) {
+    assert(shift >= 0 && shift <= 4);
+    ConeMap map;
+    map.shift = shift;
+    const Grid<Code> codes = surface_codes(ground, water, map, threads);
+    const int cols = codes.size.cols, rows = codes.size.rows, side = 1 << shift;
+    map.blocks = {(cols - 1 + side - 1) / side, (rows - 1 + side - 1) / side};
+    map.texels.resize(2 * map.blocks.count());
+
+    // Greatest code on the nodes of a block; its border nodes belong to it.
+    const auto top = [&](const Grid<Code>& field, int block_col, int block_row) {
+        const int c0 = block_col << shift, r0 = block_row << shift;
+        const int c1 = std::min(c0 + side, cols - 1), r1 = std::min(r0 + side, rows - 1);
+        Code most = 0;
+        for (int r = r0; r <= r1; ++r)
+            for (int c = c0; c <= c1; ++c)
+                most = std::max(most, field.values[std::size_t(r) * std::size_t(cols) + std::size_t(c)]);
+        return most;
+    };
+    const std::vector<Code> slopes = ladder(codes, threads);
+    share_out(map.blocks.rows, threads, [&](int first, int last) {
+        for (int r = first; r < last; ++r)
+            for (int c = 0; c < map.blocks.cols; ++c) {
+                Code* texel = &map.texels[2 * (std::size_t(r) * std::size_t(map.blocks.cols) + std::size_t(c))];
+                texel[0] = top(codes, c, r);
+                texel[1] = slopes.front();
+            }
+    });
+    Grid<Code> dilated(codes.size);
+    for (std::size_t k = 1; k < slopes.size(); ++k) {
+        const Code slope = slopes[k];
+        share_out(rows, threads, [&](int first, int last) {
+            std::vector<Code> buffers;
+            for (int r = first; r < last; ++r) {
+                Code* row = &dilated.values[std::size_t(r) * std::size_t(cols)];
+                std::copy_n(&codes.values[std::size_t(r) * std::size_t(cols)], cols, row);
+                dilate_row(row, cols, slope, buffers);
+            }
+        });
+        // Columns in strips that stay in the cache on the way down and back up.
+        constexpr int strip = 128;
+        share_out((cols + strip - 1) / strip, threads, [&](int first, int last) {
+            for (int s = first; s < last; ++s) {
+                const int from = s * strip, count = std::min(strip, cols - from);
+                const auto at = [&](int r) {
+                    return &dilated.values[std::size_t(r) * std::size_t(cols) + std::size_t(from)];
+                };
+                for (int r = 1; r < rows; ++r)
+                    raise(at(r), at(r - 1), slope, count);
+                for (int r = rows - 2; r >= 0; --r)
+                    raise(at(r), at(r + 1), slope, count);
+            }
+        });
+        share_out(map.blocks.rows, threads, [&](int first, int last) {
+            for (int r = first; r < last; ++r)
+                for (int c = 0; c < map.blocks.cols; ++c) {
+                    Code* texel = &map.texels[2 * (std::size_t(r) * std::size_t(map.blocks.cols) + std::size_t(c))];
+                    if (texel[1] == slopes[k - 1] && top(dilated, c, r) <= texel[0])
+                        texel[1] = slope;
+                }
+        });
+    }
+    return map;
+}
+
+} // namespace tarn

@@ -1,0 +1,101 @@
+#include "render/field_bounds.hpp"
+
+#include "core/cone_map.hpp"
+
+#include "shared/view_block.h"
+
+#include <algorithm>
+
+namespace tarn::render {
+
+namespace {
+
+GLuint groups(int items) { return static_cast<GLuint>((items + 7) / 8); }
+
+int next_power_of_two(int n) {
+    int p = 1;
+    while (p < n)
+        p *= 2;
+    return p;
+}
+
+} // namespace
+
+int FieldBounds::root_level(GridSize nodes) {
+    const int cells = std::max(nodes.cols, nodes.rows) - 1;
+    int level = 1;
+    while ((1 << (2 * level)) < cells)
+        ++level;
+    return level;
+}
+
+void FieldBounds::prepare(scene::Walk walk, bool with_water) {
+    switch (walk) {
+    case scene::Walk::maximum_mipmap:
+        if (maxima_.id() == 0)
+            build_maxima();
+        break;
+    case scene::Walk::cone_map:
+        if (with_water && surface_cones_.id() == 0)
+            surface_cones_ = build_cones(true, surface_cone_m_);
+        if (!with_water && ground_cones_.id() == 0)
+            ground_cones_ = build_cones(false, ground_cone_m_);
+        break;
+    default:
+        break;
+    }
+}
+
+void FieldBounds::bind(scene::Walk walk, bool with_water) const {
+    if (walk == scene::Walk::maximum_mipmap)
+        maxima_.bind(TARN_TEXTURE_BOUNDS);
+    else if (walk == scene::Walk::cone_map)
+        (with_water ? surface_cones_ : ground_cones_).bind(TARN_TEXTURE_BOUNDS);
+    else
+        heights_.bind(TARN_TEXTURE_BOUNDS);
+}
+
+void FieldBounds::build_maxima() {
+    const auto root = gpu::shader_root();
+    const gpu::ComputeProgram block_maxima(gpu::load_shader(root, "passes/block_maxima.comp"));
+    const gpu::ComputeProgram reduce_maxima(gpu::load_shader(root, "passes/reduce_maxima.comp"));
+    const GridSize size = scene_.ground.size();
+    const int root_of_field = root_level(size);
+    const int wide = next_power_of_two((size.cols - 1 + 3) / 4);
+    const int high = next_power_of_two((size.rows - 1 + 3) / 4);
+    const int levels = 2 * (root_of_field - 1) + 1;
+    // The root's one texel must exist: pad the longer side up to a power of four blocks.
+    const int side = 1 << (2 * (root_of_field - 1));
+    const int w = wide >= high ? std::max(wide, side) : wide;
+    const int h = high > wide ? std::max(high, side) : high;
+    maxima_ = gpu::Texture2D(GL_RG32F, w, h, levels, gpu::Filter::nearest, "block maxima");
+    bytes_ += std::size_t(w) * std::size_t(h) * 8 * 4 / 3;
+    heights_.bind(TARN_TEXTURE_HEIGHTS);
+    maxima_.bind(TARN_TEXTURE_BOUNDS);
+    block_maxima.use();
+    maxima_.bind_image(TARN_IMAGE_MAXIMA, GL_WRITE_ONLY, 0);
+    glDispatchCompute(groups(w), groups(h), 1);
+    reduce_maxima.use();
+    for (int level = 0; level + 1 < levels; ++level) {
+        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+        maxima_.bind_image(TARN_IMAGE_MAXIMA, GL_WRITE_ONLY, level + 1);
+        glUniform1i(0, level);
+        glDispatchCompute(groups(std::max(1, w >> (level + 1))),
+                          groups(std::max(1, h >> (level + 1))), 1);
+    }
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    gpu::check_gl("building the block maxima");
+}
+
+gpu::Texture2D FieldBounds::build_cones(bool with_water, double& cone_m) {
+    const ConeMap map = cone_map(scene_.ground, with_water ? &scene_.water : nullptr, shift);
+    gpu::Texture2D texture(GL_RG16, map.blocks.cols, map.blocks.rows, 1, gpu::Filter::nearest,
+                           "cone map");
+    texture.upload(GL_RG, GL_UNSIGNED_SHORT, map.texels.data());
+    cone_m = map.scale_m * 65535.0;
+    bytes_ += map.texels.size() * sizeof map.texels[0];
+    gpu::check_gl("uploading the cone map");
+    return texture;
+}
+
+} // namespace tarn::render
