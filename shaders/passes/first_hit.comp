@@ -6,7 +6,7 @@
 #include "lib/walk.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = TARN_TEXTURE_CODES) uniform usampler2D codes;
+layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
 layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
 layout(binding = TARN_TEXTURE_BEAMS) uniform sampler2D beams;
@@ -24,7 +24,7 @@ void main() {
     Ray ray = ray_from(view.walk.zw, view.camera.xyz, direction, view.grid.z);
     ray.begin = texelFetch(beams, pixel >> 3, 0).r;
     float t = 0.0;
-    if (trace_field(codes, bounds, field_of(view), ray, 1e9, from_above, hit))
+    if (trace_field(heights, bounds, field_of(view), ray, 1e9, from_above, hit))
         t = hit.water ? -hit.t : hit.t;
     imageStore(distance_image, pixel, vec4(t));
 }

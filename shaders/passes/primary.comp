@@ -6,7 +6,7 @@
 #include "lib/walk.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = TARN_TEXTURE_CODES) uniform usampler2D codes;
+layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
 layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;
 layout(binding = TARN_TEXTURE_BEAMS) uniform sampler2D beams;
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
@@ -41,7 +41,7 @@ void main() {
     Ray ray = ray_of(view, part);
     ray.begin = texelFetch(beams, pixel >> 3, 0).r;
     if (!part.in_water || part.bed_known)
-        found = trace_field(codes, bounds, field_of(view), ray, limit, !part.in_water, hit);
+        found = trace_field(heights, bounds, field_of(view), ray, limit, !part.in_water, hit);
     End end = End(limit, ivec2(0), vec2(0.0), 0u);
     if (found) {
         end = End(hit.t, hit.cell, hit.inside, hit.water ? end_surface : end_ground);

@@ -6,7 +6,7 @@
 #include "lib/walk.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = TARN_TEXTURE_CODES) uniform usampler2D codes;
+layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
 layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
 layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform readonly uimage2D first_hits;
@@ -28,7 +28,7 @@ void main() {
     End end = End(limit, ivec2(0), vec2(0.0), 0u);
     if (!part.in_water || part.bed_known) {
         Hit hit;
-        if (trace_field(codes, bounds, field_of(view), ray_of(view, part), limit, false, hit))
+        if (trace_field(heights, bounds, field_of(view), ray_of(view, part), limit, false, hit))
             end = End(hit.t, hit.cell, hit.inside, end_ground);
     }
     if (number == 1)

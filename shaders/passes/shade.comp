@@ -55,14 +55,14 @@ vec3 ground_radiance(Part part, End end, float path_m) {
         float rise = normalize(vec3(-part.direction.xy, 0.5)).z;
         return earth * inverse_pi * view.sky_irradiance.rgb * (0.5 + 0.5 * rise);
     }
-    vec2 gradient = ground_gradient(heights, field.nodes, end.cell, end.inside, view.heights.y);
+    vec2 gradient = ground_gradient(heights, view.grid.xy, end.cell, end.inside, view.heights.y);
     vec3 normal = normal_of(gradient, view.grid.z);
     vec3 albedo = vec3(view.look.w);
     if (view.look.w < 0.0) {
         float footprint = view.camera.w * path_m;
         float shore = part.in_water ? part.level : view.look.z;
         vec2 nodes = vec2(end.cell) + end.inside;
-        float near_water = water_share(heights, field.nodes, end.cell, end.inside);
+        float near_water = water_share(heights, view.grid.xy, end.cell, end.inside);
         albedo = ground_albedo(nodes * view.grid.z, z - shore, part.in_water, near_water, view.look.x - shore,
                                view.look.y - shore, length(gradient) / view.grid.z, footprint);
         if (on(TARN_FLAG_ORTHO) && !part.in_water) {

@@ -10,7 +10,6 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
-layout(binding = TARN_TEXTURE_CODES) uniform usampler2D codes;
 layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
 layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform uimage2D hits[3];
@@ -37,7 +36,7 @@ void main() {
     Field field = field_of(view);
     vec3 sun = view.sun.xyz;
     vec3 towards = part.in_water ? sun_below(sun, view.attenuation.w) : sun;
-    vec3 normal = normal_of(ground_gradient(heights, field.nodes, end.cell, end.inside, view.heights.y), view.grid.z);
+    vec3 normal = normal_of(ground_gradient(heights, view.grid.xy, end.cell, end.inside, view.heights.y), view.grid.z);
     if (sun.z <= 0.0 || dot(normal, towards) <= 0.0)
         return;
     float height = part.origin.z + end.t * part.direction.z + view.options.x;
@@ -46,7 +45,7 @@ void main() {
     for (int leg = part.in_water ? 0 : 1; leg < 2 && lit; ++leg) {
         float t_leg = leg == 0 ? max(part.level - from.z, 0.0) / towards.z : far_m;
         Hit ignored;
-        lit = !trace_field(codes, bounds, field,
+        lit = !trace_field(heights, bounds, field,
                            ray_from(end.cell, from, leg == 0 ? towards : sun, view.grid.z), t_leg, false, ignored);
         from = vec3(from.xy + vec2(towards.x, -towards.y) / view.grid.z * t_leg, max(part.level, from.z));
     }

@@ -21,7 +21,6 @@ using ivec4 = glm::ivec4;
 #define TARN_TEXTURE_BOUNDS 1  // what the walk skips by: see its file in lib/walks
 #define TARN_TEXTURE_SKY 2     // RGBA32F: sky radiance
 #define TARN_TEXTURE_ORTHO 3   // SRGB8_ALPHA8: orthophoto
-#define TARN_TEXTURE_CODES 5   // R32UI view of the heights: ground in the lower, water in the upper half
 #define TARN_TEXTURE_BEAMS 4   // R32F: free path of each tile of 8 x 8 pixels [m]
 #define TARN_IMAGE_RADIANCE 0  // rgba32f
 #define TARN_IMAGE_DISTANCE 1  // r32f

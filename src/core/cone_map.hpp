@@ -29,7 +29,9 @@ struct ConeMap {
     double offset_m = 0;  ///< elevation of code 0
     double scale_m = 1;   ///< metres per code, of tops; metres per code and cell, of slopes
     double highest_m = 0; ///< no place of the surface is higher
-    std::vector<std::uint16_t> texels; ///< top and slope of each block, row by row
+    /// Top and slope of each block, row by row. With water, slopes are odd where there is some in the
+    /// block or in one of the eight around it, else even (one code steeper if need be).
+    std::vector<std::uint16_t> texels;
 };
 
 /// @param ground   at least 2 x 2 nodes

@@ -33,24 +33,6 @@ Texture2D::Texture2D(GLenum format, int width_px, int height_px, int levels, Fil
     glObjectLabel(GL_TEXTURE, id, static_cast<GLsizei>(label.size()), label.c_str());
 }
 
-Texture2D Texture2D::view_as(GLenum format, const std::string& label) const {
-    Texture2D view;
-    GLuint id = 0;
-    glGenTextures(1, &id); // a name without storage of its own
-    view.name_ = Name<delete_texture>(id);
-    view.format_ = format;
-    view.width_px_ = width_px_;
-    view.height_px_ = height_px_;
-    glTextureView(id, GL_TEXTURE_2D, name_.get(), format, 0, 1, 0, 1);
-    glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glTextureParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    check_gl("viewing " + label);
-    glObjectLabel(GL_TEXTURE, id, static_cast<GLsizei>(label.size()), label.c_str());
-    return view;
-}
-
 void Texture2D::upload(GLenum components, GLenum type, const void* texels) {
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTextureSubImage2D(id(), 0, 0, 0, width_px_, height_px_, components, type, texels);

@@ -50,8 +50,6 @@ public:
     Texture2D(GLenum format, int width_px, int height_px, int levels, Filter filter,
               const std::string& label);
 
-    /// The same memory with another format of the same size, e.g. GL_R32UI for GL_RG16; not filtered.
-    Texture2D view_as(GLenum format, const std::string& label) const;
     /// Uploads all of level 0, tightly packed.
     void upload(GLenum components, GLenum type, const void* texels);
     /// Reads all of level 0 into `bytes` bytes at `out`.

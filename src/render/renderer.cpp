@@ -22,6 +22,8 @@ Renderer::Renderer(const scene::Scene& scene)
     : scene_(scene), view_buffer_(sizeof(shared::ViewBlock), nullptr), bounds_(scene, heights_) {
     shade_ = gpu::ComputeProgram(gpu::load_shader(gpu::shader_root(), "passes/shade.comp"));
     upload_scene();
+    view_buffer_.write(&block_, sizeof block_); // bounds are made from what it says of the field
+    glBindBufferBase(GL_UNIFORM_BUFFER, TARN_BLOCK_VIEW, view_buffer_.id());
 }
 
 void Renderer::upload_scene() {
@@ -36,7 +38,6 @@ void Renderer::upload_scene() {
         packed[2 * i + 1] = water.codes.values[i];
     }
     heights_.upload(GL_RG, GL_UNSIGNED_SHORT, packed.data());
-    codes_ = heights_.view_as(GL_R32UI, "height codes");
     heights_bytes_ = packed.size() * sizeof packed[0];
     block_.walk = {FieldBounds::root_level(size), FieldBounds::cone_shift, 0, 0};
 
@@ -102,7 +103,6 @@ void Renderer::bind_field(scene::Walk walk, bool with_water) {
     view_buffer_.write(&block_, sizeof block_);
     glBindBufferBase(GL_UNIFORM_BUFFER, TARN_BLOCK_VIEW, view_buffer_.id());
     heights_.bind(TARN_TEXTURE_HEIGHTS);
-    codes_.bind(TARN_TEXTURE_CODES);
     bounds_.bind(walk, with_water);
 }
 

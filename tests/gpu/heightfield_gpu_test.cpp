@@ -209,7 +209,7 @@ TEST(HeightfieldGpu, FirstCrossingIsTheRootThatBisectionFinds) {
         in.emplace_back(above, below, curve, 0);
     }
     const auto got = test_support::GpuFunction("lib/heightfield.glsl",
-                                               "result.x = first_crossing(x.x, x.y, x.z);")(in);
+                                               "result.x = first_crossing(Gap(x.x, x.y, x.z));")(in);
     int crossings = 0;
     for (std::size_t i = 0; i < in.size(); ++i) {
         const long double c = in[i].x, e = in[i].y, a = in[i].z, b = e - c - a;

@@ -33,11 +33,11 @@ inline std::vector<TestHit> trace_on_gpu(const scene::Scene& scene, std::vector<
     const GpuFunction trace(
         "lib/walks/" + file + ".glsl",
         text("Hit hit; Ray ray = ray_from(ivec2(0), x.xyz, y.xyz, view.grid.z); bool found = "
-             "trace_field(codes, "
+             "trace_field(heights, "
              "bounds, field_of(view), ray, 1e9, ", with_water ? "true" : "false",
              ", hit);\n    if (found) result = vec4(hit.t, hit.water ? 2.0 : 1.0, "
              "float(hit.cell.x) + hit.inside.x, float(hit.cell.y) + hit.inside.y);"),
-        "layout(binding = TARN_TEXTURE_CODES) uniform usampler2D codes;\n"
+        "layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;\n"
         "layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;\n"
         "layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };\n");
     renderer.bind_field(walk, with_water);

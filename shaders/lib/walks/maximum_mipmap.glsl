@@ -8,42 +8,48 @@
 // Bounds   RG32F, level L in mip level 2 (L - 1); red: ground, green: water (-1e30: none).
 #include "lib/heightfield.glsl"
 
-bool trace_field(usampler2D codes, sampler2D bounds, Field field, Ray ray, float t_max, bool with_water, out Hit hit) {
+bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, float t_max, bool with_water, out Hit hit) {
     Span span;
     if (!clip_ray(field, ray, t_max, span))
         return false;
-    float t = span.t;
+    float t = span.t, per_m = 1.0 / field.unit_m;
+    ivec2 ahead = ivec2(span.ahead);
     // Blocks of 64 cells to begin with: most rays would only descend through the larger ones. Those
     // that fly far climb to them by themselves.
     int level = min(field.root, 3);
-    ivec2 block = cell_at(field, ray, span, t) >> (2 * level);
+    ivec2 block = (ivec2(cell_at(span, t)) + ray.base) >> (2 * level);
     bool near_water = false; // is there any water in the block of 4 x 4 cells
     for (int i = 8 * (field.cells.x + field.cells.y) + 256; i > 0; --i) {
-        vec2 t_border = borders(ray, span, block, 2 * level);
+        vec2 t_border = (vec2(((block + ahead) << (2 * level)) - ray.base) - span.o) * span.inverse;
         float t_out = min(min(t_border.x, t_border.y), span.t_end);
         if (level > 0) {
             float lowest = span.oz + (span.dz < 0.0 ? t_out : t) * span.dz;
-            vec2 highest = texelFetch(bounds, block, 2 * (level - 1)).rg;
+            vec2 highest = texelFetch(bounds, block, 2 * (level - 1)).rg * per_m;
             float top = with_water ? max(highest.r, highest.g) : highest.r;
             if (lowest <= top + span.slack) {
                 --level;
-                near_water = with_water && highest.g > -1e29;
+                near_water = with_water && highest.g > -1e20;
                 ivec2 child = (ivec2(floor(span.o + t * span.d)) + ray.base) >> (2 * level);
                 block = clamp(child, block * 4, block * 4 + 3);
                 block = min(block, (field.cells - 1) >> (2 * level));
                 continue;
             }
-        } else if (meet_cell(codes, field, ray, span, block, t, t_out, near_water, hit)) {
-            return true;
+        } else {
+            vec2 cell = vec2(block - ray.base);
+            Meeting m = look_into(heights, field, ray, span, cell, t, t_out, near_water);
+            if (m.met) {
+                hit = hit_of(ray, span, m, cell, t, t_out);
+                return true;
+            }
         }
         if (t_out >= span.t_end)
             return false;
         t = max(t, t_out);
         ivec2 next = block;
         if (t_border.x < t_border.y)
-            next.x += span.stride.x;
+            next.x += 2 * ahead.x - 1;
         else
-            next.y += span.stride.y;
+            next.y += 2 * ahead.y - 1;
         // Up one level whenever the parent is left; its number follows from the child's.
         if (level < field.root && (next >> 2) != (block >> 2)) {
             ++level;
