@@ -14,13 +14,13 @@
 // Heights inside the walks are in units of a texel (0 to 1 over the ground's 16 bits), so that what is
 // fetched needs no conversion.
 struct Field {
-    ivec2 cells;       // nodes minus one
+    vec2 cells;        // nodes minus one
     vec2 texel;        // one over the nodes
-    float unit_m;      // metres per unit texel
+    float per_m;       // units a metre
     vec2 water;        // water texel -> units: x offset, y factor
     float top;         // no node is higher
     float bottom;      // of the block of earth, below all nodes
-    float spacing_m;   // between nodes
+    float per_spacing; // nodes a metre
     int root;          // maximum mipmap: level whose one block covers the field
     int shift;         // cone map: blocks of 2^shift cells a side
     vec2 cone;         // cone map texel -> units, of the ground's (x) and the surface's (y)
@@ -29,17 +29,15 @@ struct Field {
 
 // field_of — the field that a view block describes.
 Field field_of(ViewBlock view) {
-    float per_m = 1.0 / view.heights.y;
-    return Field(ivec2(view.grid.xy) - 1, 1.0 / view.grid.xy, view.heights.y, view.heights.zw * per_m,
-                 view.grid.w * per_m, view.forward.w * per_m, view.grid.z, view.walk.x, view.walk.y,
-                 view.bounds.xy * per_m, view.bounds.z);
+    return Field(view.grid.xy - 1.0, view.inverse_size.xy, view.units.x, view.units.yz, view.units.w, view.bounds.w,
+                 view.base.z, view.walk.x, view.walk.y, view.bounds.xy, view.bounds.z);
 }
 
 // Origin and direction per metre of path: columns, rows, height [m]. Columns and rows count from the
-// node `base`, near the origin: whole nodes stay whole numbers, and float32 holds what is left to a
-// ten-millionth of the distance travelled, wherever in the field the ray starts.
+// node `base`, near the origin: whole nodes stay whole numbers (floats hold them up to 2^24), and what is
+// left is held to a ten-millionth of the distance travelled, wherever in the field the ray starts.
 struct Ray {
-    ivec2 base;
+    vec2 base;
     vec3 origin;
     vec3 direction;
     float begin;    // metres along it: nothing is met before
@@ -55,10 +53,8 @@ struct Hit {
 // ray_from — a ray from node `base` + origin.xy (columns, rows) at height origin.z.
 //
 //   direction  scene axes (x east, y north), unit
-Ray ray_from(ivec2 base, vec3 origin, vec3 direction, float spacing_m) {
-    vec2 whole = floor(origin.xy);
-    return Ray(base + ivec2(whole), vec3(origin.xy - whole, origin.z),
-               vec3(direction.x / spacing_m, -direction.y / spacing_m, direction.z), 0.0);
+Ray ray_from(Field field, vec2 base, vec3 origin, vec3 direction) {
+    return Ray(base, origin, vec3(direction.x * field.per_spacing, -direction.y * field.per_spacing, direction.z), 0.0);
 }
 
 // bilinear — heights in gather order (0,1) (1,1) (1,0) (0,0), columns and rows.
@@ -110,21 +106,20 @@ struct Span {
 //
 //   returns  false if nothing is left
 bool clip_ray(Field field, Ray ray, float t_max, out Span span) {
-    float per_m = 1.0 / field.unit_m;
     vec2 o = ray.origin.xy, d = ray.direction.xy;
-    float oz = ray.origin.z * per_m, dz = ray.direction.z * per_m;
+    float oz = ray.origin.z * field.per_m, dz = ray.direction.z * field.per_m;
     // A ray that never leaves its column or row creeps: 1e-12 cells a metre change no answer, and it is
     // over the field at once or, for all purposes, never.
     d = vec2(abs(d.x) < 1e-12 ? 1e-12 : d.x, abs(d.y) < 1e-12 ? 1e-12 : d.y);
     vec2 inverse = 1.0 / d;
-    vec2 low = vec2(-ray.base), high = vec2(field.cells - ray.base);
+    vec2 low = -ray.base, high = field.cells - ray.base;
     vec2 t_low = (low - o) * inverse, t_high = (high - o) * inverse;
     vec2 t_first = min(t_low, t_high), t_last = max(t_low, t_high);
     float t = max(ray.begin, max(t_first.x, t_first.y));
     float t_end = min(t_max, min(t_last.x, t_last.y));
     // Nothing is higher than the highest node or lower than the bottom. The slab is widened by the
     // rounding of oz + t dz: ground is only passed over if it is missed by more than this.
-    float slack = 3e-7 * (abs(oz) + abs(dz) * max(t_end, 0.0)) + 1e-6 * per_m;
+    float slack = 3e-7 * (abs(oz) + abs(dz) * max(t_end, 0.0)) + 1e-6 * field.per_m;
     float to_top = field.top + slack - oz, to_bottom = field.bottom - oz;
     if (abs(ray.direction.z) > 1e-12) {
         float rise = 1.0 / dz;
@@ -134,7 +129,7 @@ bool clip_ray(Field field, Ray ray, float t_max, out Span span) {
     } else if (to_top < 0.0 || to_bottom > 0.0) {
         return false;
     }
-    slack = 3e-7 * (abs(oz) + abs(dz) * max(t_end, 0.0)) + 1e-6 * per_m;
+    slack = 3e-7 * (abs(oz) + abs(dz) * max(t_end, 0.0)) + 1e-6 * field.per_m;
     span = Span(o, d, inverse, oz, dz, t, t_end, slack, vec2(greaterThan(d, vec2(0.0))), low, high - 1.0);
     return t < t_end;
 }
@@ -171,7 +166,7 @@ struct Meeting {
 //   wet      whether there may be water to stop at
 Meeting look_into(sampler2D heights, Field field, Ray ray, Span span, vec2 cell, float t, float t_out, bool wet) {
     // Corners in gather order: (0,1) (1,1) (1,0) (0,0), columns and rows.
-    vec2 middle = (cell + vec2(ray.base) + 1.0) * field.texel;
+    vec2 middle = (cell + ray.base + 1.0) * field.texel;
     vec4 ground = textureGather(heights, middle, 0);
     vec2 corner = span.o - cell;
     vec2 p_in = clamp(corner + t * span.d, 0.0, 1.0), p_out = clamp(corner + t_out * span.d, 0.0, 1.0);
@@ -203,5 +198,5 @@ Hit hit_of(Ray ray, Span span, Meeting m, vec2 cell, float t, float t_out) {
         s = min(s, s_water);
     }
     t += s * max(t_out - t, 0.0);
-    return Hit(t, at_water, ivec2(cell) + ray.base, clamp(span.o - cell + t * span.d, 0.0, 1.0));
+    return Hit(t, at_water, ivec2(cell + ray.base), clamp(span.o - cell + t * span.d, 0.0, 1.0));
 }

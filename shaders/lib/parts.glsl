@@ -56,7 +56,7 @@ Split split_at_surface(vec3 direction, float index, bool from_water, bool schlic
 }
 
 struct Part {
-    ivec2 base;     // node that origin.xy counts from
+    vec2 base;      // node that origin.xy counts from
     vec3 origin;    // columns, rows, height
     vec3 direction; // unit, scene axes
     float weight;   // factor of the split
@@ -66,10 +66,10 @@ struct Part {
 };
 
 Part camera_part(ViewBlock view, ivec2 pixel) {
-    vec2 place = (vec2(pixel) + view.offset.xy) / vec2(view.counts.xy);
+    vec2 place = (vec2(pixel) + view.offset.xy) * view.inverse_size.zw;
     vec3 direction =
         pixel_direction(view.forward.xyz, view.right.xyz, view.up.xyz, vec2(view.right.w, view.up.w), place);
-    return Part(view.walk.zw, view.camera.xyz, direction, 1.0, (view.counts.z & TARN_FLAG_UNDER_WATER) != 0u,
+    return Part(view.base.xy, view.camera.xyz, direction, 1.0, (view.counts.z & TARN_FLAG_UNDER_WATER) != 0u,
                 view.options.y, view.options.z > 0.5);
 }
 
@@ -79,7 +79,7 @@ Part split_part(ViewBlock view, Part first, End end, int number) {
     Split split = split_at_surface(first.direction, view.attenuation.w, first.in_water,
                                    (view.counts.z & TARN_FLAG_SCHLICK) != 0u);
     bool mirrored = number == 1;
-    return Part(end.cell, vec3(end.inside, level), mirrored ? split.reflected : split.refracted,
+    return Part(vec2(end.cell), vec3(end.inside, level), mirrored ? split.reflected : split.refracted,
                 mirrored ? split.mirror : split.through, mirrored == first.in_water, level,
                 (end.flags & end_bed_known) != 0u);
 }
@@ -102,14 +102,12 @@ float reach(ViewBlock view, Part part) {
     return part.in_water ? min(to_surface(part), view.backscattering.w) : far_m;
 }
 
-Ray ray_of(ViewBlock view, Part part) {
-    return ray_from(part.base, part.origin, part.direction, view.grid.z);
-}
+Ray ray_of(ViewBlock view, Part part) { return ray_from(field_of(view), part.base, part.origin, part.direction); }
 
 // place_at — node and place in its cell that the part has come to after t metres.
 void place_at(ViewBlock view, Part part, float t, out ivec2 cell, out vec2 inside) {
     vec2 at = part.origin.xy + t * vec2(part.direction.x, -part.direction.y) / view.grid.z;
-    vec2 whole = floor(at);
-    cell = clamp(part.base + ivec2(whole), ivec2(0), ivec2(view.grid.xy) - 2);
-    inside = clamp(at - vec2(cell - part.base), 0.0, 1.0);
+    vec2 node = clamp(floor(at), -part.base, view.grid.xy - 2.0 - part.base);
+    cell = ivec2(node + part.base);
+    inside = clamp(at - node, 0.0, 1.0);
 }

@@ -17,11 +17,11 @@ void main() {
 #ifdef TARN_WALK_HAS_BEAMS
     vec2 middle = vec2(8 * tile) + 4.0;
     vec3 direction = pixel_direction(view.forward.xyz, view.right.xyz, view.up.xyz, vec2(view.right.w, view.up.w),
-                                     middle / vec2(view.counts.xy));
+                                     middle * view.inverse_size.zw);
     // Half the tile's diagonal in a picture plane at distance 1: unit vectors are nearer to each other.
     float spread = 5.7 * view.camera.w;
     bool from_above = (view.counts.z & TARN_FLAG_UNDER_WATER) == 0u;
-    Ray ray = ray_from(view.walk.zw, view.camera.xyz, direction, view.grid.z);
+    Ray ray = ray_from(field_of(view), view.base.xy, view.camera.xyz, direction);
     reach = beam_reach(bounds, field_of(view), ray, spread, from_above);
 #endif
     imageStore(beams, tile, vec4(reach));

@@ -4,8 +4,8 @@
 // of the tile. Only walks: see lib/parts.glsl.
 #include "lib/parts.glsl"
 #include "lib/walk.glsl"
+#include "lib/regroup.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
 layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;
 layout(binding = TARN_TEXTURE_BEAMS) uniform sampler2D beams;
@@ -29,19 +29,7 @@ bool bed_is_known(float level) {
     return lakes[low].y > 0.5;
 }
 
-void main() {
-    ivec2 local = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(local, view.tile.zw)))
-        return;
-    ivec2 pixel = local + view.tile.xy;
-    Part part = camera_part(view, pixel);
-    float limit = reach(view, part);
-    Hit hit;
-    bool found = false;
-    Ray ray = ray_of(view, part);
-    ray.begin = texelFetch(beams, pixel >> 3, 0).r;
-    if (!part.in_water || part.bed_known)
-        found = trace_field(heights, bounds, field_of(view), ray, limit, !part.in_water, hit);
+void store(ivec2 pixel, Part part, float limit, bool found, Hit hit) {
     End end = End(limit, ivec2(0), vec2(0.0), 0u);
     if (found) {
         end = End(hit.t, hit.cell, hit.inside, hit.water ? end_surface : end_ground);
@@ -51,7 +39,49 @@ void main() {
         end.flags = end_surface | (part.bed_known ? end_bed_known : 0u);
         place_at(view, part, limit, end.cell, end.inside);
     }
-    imageStore(hits, local, pack_end(end));
+    imageStore(hits, pixel - view.tile.xy, pack_end(end));
     if (view.offset.z < 0.5)
         imageStore(distance_image, pixel, vec4(end.flags != 0u ? end.t : far_m));
+}
+
+void main() {
+    ivec2 pixel = regroup_pixel() + view.tile.xy;
+    bool inside = all(lessThan(pixel - view.tile.xy, view.tile.zw));
+    Hit hit;
+#ifdef TARN_REGROUP
+    regroup_begin();
+    if (inside) {
+        Part part = camera_part(view, pixel);
+        float limit = reach(view, part), t;
+        Ray ray = ray_of(view, part);
+        ray.begin = texelFetch(beams, pixel >> 3, 0).r;
+        int state = walk_missed;
+        if (!part.in_water || part.bed_known)
+            state = walk_on(heights, bounds, field_of(view), ray, limit, !part.in_water, 1, hit, t);
+        if (state == walk_unfinished)
+            regroup_wait(t);
+        else
+            store(pixel, part, limit, state == walk_hit, hit);
+    }
+    float begin;
+    if (!regroup_next(pixel, begin))
+        return;
+    pixel += view.tile.xy;
+    Part part = camera_part(view, pixel);
+    float limit = reach(view, part);
+    Ray ray = ray_of(view, part);
+    ray.begin = begin;
+    store(pixel, part, limit, trace_field(heights, bounds, field_of(view), ray, limit, !part.in_water, hit), hit);
+#else
+    if (!inside)
+        return;
+    Part part = camera_part(view, pixel);
+    float limit = reach(view, part);
+    Ray ray = ray_of(view, part);
+    ray.begin = texelFetch(beams, pixel >> 3, 0).r;
+    bool found = false;
+    if (!part.in_water || part.bed_known)
+        found = trace_field(heights, bounds, field_of(view), ray, limit, !part.in_water, hit);
+    store(pixel, part, limit, found, hit);
+#endif
 }

@@ -46,9 +46,8 @@ vec3 sun_irradiance_below(vec3 below) {
 //
 //   path_m  length of the way from the camera, for the footprint of a pixel
 vec3 ground_radiance(Part part, End end, float path_m) {
-    Field field = field_of(view);
     float z = part.origin.z + end.t * part.direction.z;
-    vec4 corners = textureGather(heights, (vec2(end.cell) + 1.0) * field.texel, 0) * view.heights.y;
+    vec4 corners = textureGather(heights, (vec2(end.cell) + 1.0) * view.inverse_size.xy, 0) * view.heights.y;
     if (!part.in_water && z < bilinear(corners, end.inside) - view.options.x) {
         // The side of the block that the scene is cut out of.
         vec3 earth = view.look.w < 0.0 ? vec3(0.19, 0.155, 0.115) : vec3(view.look.w);

@@ -46,7 +46,7 @@ void main() {
         float t_leg = leg == 0 ? max(part.level - from.z, 0.0) / towards.z : far_m;
         Hit ignored;
         lit = !trace_field(heights, bounds, field,
-                           ray_from(end.cell, from, leg == 0 ? towards : sun, view.grid.z), t_leg, false, ignored);
+                           ray_from(field, vec2(end.cell), from, leg == 0 ? towards : sun), t_leg, false, ignored);
         from = vec3(from.xy + vec2(towards.x, -towards.y) / view.grid.z * t_leg, max(part.level, from.z));
     }
     if (!lit)

@@ -37,7 +37,7 @@ using ivec4 = glm::ivec4;
 #define TARN_FLAG_UNDER_WATER 64u
 
 struct ViewBlock {
-    vec4 camera;          // xyz: position from node walk.zw (grid), w: angle of a pixel [rad]
+    vec4 camera;          // xyz: position from the node `base` (grid), w: angle of a pixel [rad]
     vec4 forward;         // xyz: unit, w: bottom of the block of earth [m]
     vec4 right;           // xyz: unit, w: tangent of half the horizontal field of view
     vec4 up;              // xyz: unit, w: tangent of half the vertical field of view
@@ -57,14 +57,17 @@ struct ViewBlock {
                           // z: 1 if that lake's bed is known, w: weight of this sample
     vec4 offset;          // xy: position inside the pixel, z: index of the sample, w: -
     uvec4 counts;         // x: width, y: height [px], z: flags, w: lakes
-    ivec4 walk;           // x: level of the root block, y: cone map's blocks are 2^y cells a side,
-                          // zw: node by the camera
     ivec4 tile;           // xy: first pixel, zw: size of the tile being drawn
-    vec4 bounds;          // cone map, metres per unit texel: x: of the ground, y: of the surface;
-                          // z: setting of the walk, w: -
+    vec4 base;            // xy: node by the camera, z: 1 / spacing [1/m], w: -
+    vec4 inverse_size;    // xy: 1 / nodes, zw: 1 / pixels
+    // For the walks, whose unit of height is that of a texel (lib/heightfield.glsl):
+    vec4 units;           // x: units a metre, yz: of water: offset and factor on the texel, w: the top
+    vec4 bounds;          // cone map, units a texel: x: of the ground, y: of the surface;
+                          // z: setting of the walk, w: the bottom
+    ivec4 walk;           // x: level of the root block, y: cone map's blocks are 2^y cells a side, zw: -
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewBlock) == 320 && offsetof(ViewBlock, tile) == 288, "std140 layout");
+static_assert(sizeof(ViewBlock) == 368 && offsetof(ViewBlock, walk) == 352, "std140 layout");
 } // namespace tarn::shared
 #endif

@@ -137,7 +137,7 @@ std::vector<IntersectionResult> compare_methods(const scene::Scene& scene, const
         }
     const std::vector<Candidate> all = candidates(options);
     std::vector<IntersectionResult> results;
-    render::Renderer renderer(scene);
+    render::Renderer renderer(scene, options.rays_in_step);
     if (options.cone_shift >= 0)
         renderer.set_cone_shift(options.cone_shift);
     const double total = double(views.size() * options.sizes.size() * all.size());

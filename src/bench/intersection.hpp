@@ -5,6 +5,7 @@
 #include "scene/settings.hpp"
 
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct IntersectionOptions {
     std::vector<PictureSize> sizes;   ///< at least one
     int runs = 21;                    ///< timed, after warming up
     int judged_rays = 40'000;         ///< of each picture against the double-precision grid walk
+    std::optional<bool> rays_in_step; ///< experiments: as the device is by default
     int cone_shift = -1;              ///< experiments: >= 0 sets the cone map's blocks
 };
 

@@ -126,6 +126,12 @@ int Context::max_texture_side_px() const {
     return side;
 }
 
+bool is_software() {
+    const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    const std::string renderer = name ? name : "";
+    return renderer.find("llvmpipe") != std::string::npos || renderer.find("softpipe") != std::string::npos;
+}
+
 std::vector<DisplayAttempt> probe_displays() {
     std::vector<DisplayAttempt> out;
     for (const Way& way : ways()) {

@@ -35,6 +35,9 @@ private:
     std::string way_;
 };
 
+/// Is the current context drawn by the CPU (Mesa's llvmpipe and softpipe)?
+bool is_software();
+
 /// Every headless way this machine offers, for `tarn doctor`. Creates no context.
 std::vector<DisplayAttempt> probe_displays();
 

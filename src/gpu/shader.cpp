@@ -80,8 +80,12 @@ ShaderSource expand_shader(const fs::path& root, const std::string& code, const 
 }
 
 ShaderSource load_shader(const fs::path& root, const std::string& entry,
-                         const std::map<std::string, std::string>& replaced) {
-    return expand_shader(root, read_text(root / entry, "the program"), entry, replaced);
+                         const std::map<std::string, std::string>& replaced,
+                         const std::string& defined) {
+    std::string code = read_text(root / entry, "the program");
+    if (!defined.empty()) // the next line keeps its number
+        code.insert(code.find('\n') + 1, defined + "#line 2 0\n");
+    return expand_shader(root, code, entry, replaced);
 }
 
 std::string name_files(const std::string& driver_log, const ShaderSource& source) {

@@ -21,9 +21,11 @@ std::filesystem::path shader_root();
 /// Pastes each included file once, so libraries need no include guards.
 /// @param entry     relative to root, e.g. "passes/trace.comp"
 /// @param replaced  includes of the first file get the second instead
+/// @param defined   lines put behind #version, "#define NAME VALUE\n" each
 /// @throws tarn::Error  if a file is missing; names the file and line that asked for it
 ShaderSource load_shader(const std::filesystem::path& root, const std::string& entry,
-                         const std::map<std::string, std::string>& replaced = {});
+                         const std::map<std::string, std::string>& replaced = {},
+                         const std::string& defined = {});
 
 /// As load_shader(), for code written in memory (used by the GPU function tests).
 ShaderSource expand_shader(const std::filesystem::path& root, const std::string& code,

@@ -18,8 +18,9 @@ constexpr int tile_pixels = 1 << 22;
 
 } // namespace
 
-Renderer::Renderer(const scene::Scene& scene)
-    : scene_(scene), view_buffer_(sizeof(shared::ViewBlock), nullptr), bounds_(scene, heights_) {
+Renderer::Renderer(const scene::Scene& scene, std::optional<bool> rays_in_step)
+    : scene_(scene), view_buffer_(sizeof(shared::ViewBlock), nullptr), bounds_(scene, heights_),
+      rays_in_step_(rays_in_step.value_or(!gpu::is_software())) {
     shade_ = gpu::ComputeProgram(gpu::load_shader(gpu::shader_root(), "passes/shade.comp"));
     upload_scene();
     view_buffer_.write(&block_, sizeof block_); // bounds are made from what it says of the field
@@ -59,6 +60,12 @@ void Renderer::upload_scene() {
     block_.counts.w = static_cast<std::uint32_t>(lakes.size());
     block_.forward.w = float(scene::block_bottom_m(ground) - ground.offset_m);
 
+    const float per_m = 1.0f / block_.heights.y;
+    block_.base.z = float(1.0 / ground.spacing_m);
+    block_.inverse_size = {1.0f / float(size.cols), 1.0f / float(size.rows), 1.0f, 1.0f};
+    block_.units = {per_m, block_.heights.z * per_m, block_.heights.w * per_m, block_.grid.w * per_m};
+    block_.bounds.w = block_.forward.w * per_m;
+
     if (scene_.ortho) {
         const Ortho& o = *scene_.ortho;
         const int levels = 1 + int(std::log2(std::max(o.picture.width_px, o.picture.height_px)));
@@ -87,19 +94,24 @@ void Renderer::use_walk(const scene::RenderSettings& settings) {
     std::string file = method.name;
     std::replace(file.begin(), file.end(), '-', '_');
     const auto root = gpu::shader_root();
+    // GPUs run rays in step, software GL a few at a time: see lib/regroup.glsl and lib/walks/cone_map.glsl.
+    const bool regroup = rays_in_step_ && walk_ == scene::Walk::cone_map;
+    std::string defined = rays_in_step_ ? "#define TARN_CONES_A_LOOK 4\n" : "";
+    if (regroup)
+        defined += "#define TARN_REGROUP\n";
     const auto pass = [&](const char* name) {
         return gpu::ComputeProgram(gpu::load_shader(root, text("passes/", name, ".comp"),
-                                                    {{"lib/walks/cone_map.glsl", "lib/walks/" + file + ".glsl"}}));
+                                                    {{"lib/walks/cone_map.glsl", "lib/walks/" + file + ".glsl"}}, defined));
     };
-    passes_.emplace(walk_, WalkPasses{pass("beams"), pass("primary"), pass("secondary"), pass("shadow"), pass("first_hit")});
+    passes_.emplace(walk_, WalkPasses{pass("beams"), pass("primary"), pass("secondary"), pass("shadow"), pass("first_hit"), regroup});
 }
 
 void Renderer::bind_walk(bool with_water) { bounds_.bind(walk_, with_water); }
 
 void Renderer::bind_field(scene::Walk walk, bool with_water) {
     bounds_.prepare(walk, with_water);
-    block_.bounds.x = float(bounds_.ground_cone_m());
-    block_.bounds.y = float(bounds_.surface_cone_m());
+    block_.bounds.x = float(bounds_.ground_cone_m() / block_.heights.y);
+    block_.bounds.y = float(bounds_.surface_cone_m() / block_.heights.y);
     view_buffer_.write(&block_, sizeof block_);
     glBindBufferBase(GL_UNIFORM_BUFFER, TARN_BLOCK_VIEW, view_buffer_.id());
     heights_.bind(TARN_TEXTURE_HEIGHTS);
@@ -119,9 +131,9 @@ void Renderer::prepare(const scene::View& view) {
     const double col = ground.col(p.x), row = ground.row(p.y);
     if (!(std::abs(col) < 1e9 && std::abs(row) < 1e9 && std::abs(p.z) < 1e9))
         throw Error("the camera is too far away from the scene", "check its position");
-    block_.walk.z = int(std::floor(col));
-    block_.walk.w = int(std::floor(row));
-    block_.camera = {float(col - std::floor(col)), float(row - std::floor(row)),
+    block_.base.x = float(std::floor(col)); // a float from 2^24 on holds a node near it
+    block_.base.y = float(std::floor(row));
+    block_.camera = {float(col - double(block_.base.x)), float(row - double(block_.base.y)),
                      float(p.z - ground.offset_m), float(pixel_rad)};
     block_.forward = glm::vec4(glm::vec3(camera.forward), block_.forward.w);
     block_.right =
@@ -157,6 +169,8 @@ void Renderer::prepare(const scene::View& view) {
     }
     block_.counts.x = static_cast<std::uint32_t>(settings.width_px);
     block_.counts.y = static_cast<std::uint32_t>(settings.height_px);
+    block_.inverse_size.z = 1.0f / float(settings.width_px);
+    block_.inverse_size.w = 1.0f / float(settings.height_px);
     block_.counts.z = flags;
 
     sky_ = gpu::Texture2D(GL_RGB32F, light.sky.azimuths, light.sky.elevations, 1,
@@ -211,7 +225,7 @@ void Renderer::draw_tile() {
     const WalkPasses& pass = passes_.at(walk_);
     bind_walk((block_.counts.z & TARN_FLAG_UNDER_WATER) == 0); // only from above is water met
     pass.primary.use();
-    glDispatchCompute(across, down, 1);
+    dispatch_pixels(pass, block_.tile.z, block_.tile.w);
     glMemoryBarrier(images);
     bind_walk(false);
     if (split) {
@@ -228,6 +242,11 @@ void Renderer::draw_tile() {
     glDispatchCompute(across, down, 1);
 }
 
+void Renderer::dispatch_pixels(const WalkPasses& pass, int width, int height) {
+    const int side = pass.regrouped ? 16 : 8;
+    glDispatchCompute(GLuint((width + side - 1) / side), GLuint((height + side - 1) / side), 1);
+}
+
 void Renderer::find_beams() {
     passes_.at(walk_).beams.use();
     glDispatchCompute(GLuint((beams_.width_px() + 7) / 8), GLuint((beams_.height_px() + 3) / 4), 1);
@@ -238,8 +257,9 @@ void Renderer::find_first_hits() {
     view_buffer_.write(&block_, sizeof block_);
     bind_walk((block_.counts.z & TARN_FLAG_UNDER_WATER) == 0);
     find_beams();
-    passes_.at(walk_).first_hit.use();
-    glDispatchCompute(groups(int(block_.counts.x)), groups(int(block_.counts.y)), 1);
+    const WalkPasses& pass = passes_.at(walk_);
+    pass.first_hit.use();
+    dispatch_pixels(pass, int(block_.counts.x), int(block_.counts.y));
 }
 
 std::vector<float> Renderer::read_first_hits() const {

@@ -11,6 +11,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace tarn::render {
@@ -20,7 +21,8 @@ class Renderer {
 public:
     /// Uploads the scene.
     /// @throws tarn::Error  if the field is larger than the device's textures, or memory runs out
-    explicit Renderer(const scene::Scene& scene);
+    /// @param rays_in_step  whether the device runs many rays in step, as GPUs do; by default asked
+    explicit Renderer(const scene::Scene& scene, std::optional<bool> rays_in_step = {});
 
     /// Draws all samples and reads the picture back.
     /// @param progress  called after each sample with its share; may throw to stop
@@ -52,12 +54,14 @@ private:
     /// The passes that walk, with one method in them.
     struct WalkPasses {
         gpu::ComputeProgram beams, primary, secondary, shadow, first_hit;
+        bool regrouped; ///< primary and first_hit: lib/regroup.glsl
     };
 
     void upload_scene();
     void use_walk(const scene::RenderSettings& settings);
     void bind_walk(bool with_water);
     void find_beams();
+    void dispatch_pixels(const WalkPasses& pass, int width, int height);
     void set_sample(int sample, int samples);
     void draw_tile();
 
@@ -73,6 +77,7 @@ private:
     scene::Walk walk_ = scene::Walk::cone_map;
     std::size_t heights_bytes_ = 0;
     int samples_ = 1;
+    bool rays_in_step_;
 };
 
 } // namespace tarn::render

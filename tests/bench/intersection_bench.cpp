@@ -55,6 +55,8 @@ int run(int argc, char** argv) {
             options.all_settings = value == "all";
         else if (word == "--cone-shift")
             options.cone_shift = std::atoi(value.c_str());
+        else if (word == "--in-step")
+            options.rays_in_step = value == "1";
         else if (word == "--json")
             json = value;
         else

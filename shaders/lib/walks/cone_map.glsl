@@ -12,22 +12,25 @@
 #include "lib/heightfield.glsl"
 #define TARN_WALK_HAS_BEAMS
 
+// Cones that a ray may pass before those beside it, which may stand before a cell already, look into it.
+// GPUs run rays in step and are fastest with few; software GL with all that there are (not defined).
+// #define TARN_CONES_A_LOOK 4
+
 // beam_reach — metres that all rays of a beam fly before any of them can meet something.
 //
 //   spread   greatest difference of the beam's unit directions from the middle ray's
 //   returns  path length; at most the first place where a step would be shorter than a block
 float beam_reach(sampler2D bounds, Field field, Ray middle, float spread, bool with_water) {
-    float per_m = 1.0 / field.unit_m;
-    vec2 o = middle.origin.xy + vec2(middle.base), d = middle.direction.xy;
-    float oz = middle.origin.z * per_m, dz = middle.direction.z * per_m;
+    vec2 o = middle.origin.xy + middle.base, d = middle.direction.xy;
+    float oz = middle.origin.z * field.per_m, dz = middle.direction.z * field.per_m;
     float unit = with_water ? field.cone.y : field.cone.x;
     float side = float(1 << field.shift);
     vec2 size = side * vec2(textureSize(bounds, 0));
     float far = 1.5 * (abs(o.x) + abs(o.y) + size.x + size.y) / max(abs(d.x) + abs(d.y), 1e-6);
-    float across = 1.5 * spread / field.spacing_m; // columns plus rows a metre, > sqrt(2) spread
-    float pace = abs(d.x) + abs(d.y) + across, sink = spread * per_m - dz;
+    float across = 1.5 * spread * field.per_spacing; // columns plus rows a metre, > sqrt(2) spread
+    float pace = abs(d.x) + abs(d.y) + across, sink = spread * field.per_m - dz;
     float aside = 3e-7 * (pace * far + abs(o.x) + abs(o.y)) + side / 64.0;
-    float slack = 3e-7 * (abs(oz) + abs(dz) * far) + 1e-6 * per_m;
+    float slack = 3e-7 * (abs(oz) + abs(dz) * far) + 1e-6 * field.per_m;
     float t = 0.0;
     for (int i = 0; i < 64 && t < far; ++i) {
         vec2 at = o + t * d;
@@ -35,7 +38,7 @@ float beam_reach(sampler2D bounds, Field field, Ray middle, float spread, bool w
         vec2 out_by = max(abs(at - 0.5 * size) - 0.5 * size, 0.0);
         vec2 cone = textureLod(bounds, at / size, 0.0).rg * unit;
         float reach = aside + t * across + out_by.x + out_by.y;
-        float gap = oz + t * dz - slack - cone.x - reach * cone.y - t * spread * per_m;
+        float gap = oz + t * dz - slack - cone.x - reach * cone.y - t * spread * field.per_m;
         float closing = max(cone.y * pace + sink, 1e-12);
         if (gap * pace < side * closing)
             break;
@@ -48,16 +51,25 @@ float beam_reach(sampler2D bounds, Field field, Ray middle, float spread, bool w
 // patch costs as much as ten steps, and most that are solved too early are not hit.
 const float least_step = 0.25;
 
-bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, float t_max, bool with_water, out Hit hit) {
+// walk_on — the walk from ray.begin on, for at most so many looks into cells.
+//
+//   t        where it stands now; to go on, begin there
+//   returns  walk_hit with `hit` filled in, walk_missed, or walk_unfinished
+const int walk_missed = 0, walk_hit = 1, walk_unfinished = 2;
+#define TARN_WALK_PAUSES
+
+int walk_on(sampler2D heights, sampler2D bounds, Field field, Ray ray, float t_max, bool with_water, int looks,
+            out Hit hit, out float t) {
     Span span;
+    t = 0.0;
     if (!clip_ray(field, ray, t_max, span))
-        return false;
-    float t = span.t;
+        return walk_missed;
+    t = span.t;
     float pace = abs(span.d.x) + abs(span.d.y); // columns plus rows a metre
     float unit = with_water ? field.cone.y : field.cone.x;
     // Blocks are looked up at rounded places, by the filter unit: a ray may be this much [cells]
     // outside the block that it gets; 1/64 of a texel is for the unit (it keeps 8 bits or more).
-    vec2 whole = span.o + vec2(ray.base);
+    vec2 whole = span.o + ray.base;
     float side = float(1 << field.shift);
     vec2 per_cell = 1.0 / (side * vec2(textureSize(bounds, 0)));
     float aside = 3e-7 * (pace * span.t_end + abs(whole.x) + abs(whole.y)) + side / 64.0;
@@ -65,24 +77,39 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
     float above = span.oz - span.slack, tilt = unit * pace;
     vec2 cell = cell_at(span, t);
     float least = pace / least_step;
-    int steps = int(2.0 / least_step) * (field.cells.x + field.cells.y) + 8;
+    int steps = int(2.0 / least_step * (field.cells.x + field.cells.y)) + 8;
     float t_out;
     Meeting m;
     while (true) {
         float before = t;
         vec2 cone;
+#ifdef TARN_CONES_A_LOOK
+        bool look = false;
+        for (int k = 0; k < TARN_CONES_A_LOOK && !look; ++k) {
+#else
         while (true) {
+#endif
             cone = textureLod(bounds, at + t * step_at, 0.0).rg;
             float gap = above + t * span.dz - unit * (cone.x + aside * cone.y);
             float closing = max(tilt * cone.y - span.dz, 1e-12); // of ray and cone, per metre
+#ifdef TARN_CONES_A_LOOK
+            look = gap * least < closing || --steps < 0;
+            if (look)
+                break;
+#else
             if (gap * least < closing || --steps < 0)
                 break;
+#endif
             t += gap / closing;
             if (t >= span.t_end)
-                return false;
+                return walk_missed;
         }
         if (t > before)
             cell = cell_at(span, t);
+#ifdef TARN_CONES_A_LOOK
+        if (!look)
+            continue;
+#endif
         vec2 t_border = borders(span, cell);
         t_out = min(min(t_border.x, t_border.y), span.t_end);
         // Odd slopes: there is water in the block or beside it.
@@ -91,10 +118,17 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
         if (m.met)
             break;
         if (t_out >= span.t_end || --steps < 0)
-            return false;
+            return walk_missed;
         t = max(t, t_out);
         cell = beyond(span, cell, t_border);
+        if (--looks <= 0)
+            return walk_unfinished;
     }
     hit = hit_of(ray, span, m, cell, t, t_out);
-    return true;
+    return walk_hit;
+}
+
+bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, float t_max, bool with_water, out Hit hit) {
+    float ignored;
+    return walk_on(heights, bounds, field, ray, t_max, with_water, 1 << 30, hit, ignored) == walk_hit;
 }

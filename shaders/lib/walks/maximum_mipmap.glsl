@@ -12,15 +12,16 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
     Span span;
     if (!clip_ray(field, ray, t_max, span))
         return false;
-    float t = span.t, per_m = 1.0 / field.unit_m;
+    float t = span.t, per_m = field.per_m;
+    ivec2 base = ivec2(ray.base), cells = ivec2(field.cells);
     ivec2 ahead = ivec2(span.ahead);
     // Blocks of 64 cells to begin with: most rays would only descend through the larger ones. Those
     // that fly far climb to them by themselves.
     int level = min(field.root, 3);
-    ivec2 block = (ivec2(cell_at(span, t)) + ray.base) >> (2 * level);
+    ivec2 block = (ivec2(cell_at(span, t)) + base) >> (2 * level);
     bool near_water = false; // is there any water in the block of 4 x 4 cells
-    for (int i = 8 * (field.cells.x + field.cells.y) + 256; i > 0; --i) {
-        vec2 t_border = (vec2(((block + ahead) << (2 * level)) - ray.base) - span.o) * span.inverse;
+    for (int i = 8 * (cells.x + cells.y) + 256; i > 0; --i) {
+        vec2 t_border = (vec2(((block + ahead) << (2 * level)) - base) - span.o) * span.inverse;
         float t_out = min(min(t_border.x, t_border.y), span.t_end);
         if (level > 0) {
             float lowest = span.oz + (span.dz < 0.0 ? t_out : t) * span.dz;
@@ -29,13 +30,13 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
             if (lowest <= top + span.slack) {
                 --level;
                 near_water = with_water && highest.g > -1e20;
-                ivec2 child = (ivec2(floor(span.o + t * span.d)) + ray.base) >> (2 * level);
+                ivec2 child = (ivec2(floor(span.o + t * span.d)) + base) >> (2 * level);
                 block = clamp(child, block * 4, block * 4 + 3);
-                block = min(block, (field.cells - 1) >> (2 * level));
+                block = min(block, (cells - 1) >> (2 * level));
                 continue;
             }
         } else {
-            vec2 cell = vec2(block - ray.base);
+            vec2 cell = vec2(block - base);
             Meeting m = look_into(heights, field, ray, span, cell, t, t_out, near_water);
             if (m.met) {
                 hit = hit_of(ray, span, m, cell, t, t_out);
