@@ -2,11 +2,11 @@
 // passes/first_hit.comp — distance to what each pixel's ray meets first, and nothing else: what the
 // comparison of methods times and judges.
 // Reads heights, bounds and beams; writes distances: > 0 ground, < 0 water, 0 nothing. One invocation a
-// pixel. Rays that go on after their first look into a cell are regrouped: lib/regroup.glsl.
+// pixel.
 #include "lib/camera.glsl"
 #include "lib/walk.glsl"
-#include "lib/regroup.glsl"
 
+layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
 layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;
 layout(binding = TARN_TEXTURE_BEAMS) uniform sampler2D beams;
@@ -20,38 +20,16 @@ Ray ray_through(ivec2 pixel) {
     return ray_from(field_of(view), view.base.xy, view.camera.xyz, direction);
 }
 
-void store(ivec2 pixel, bool found, Hit hit) {
-    imageStore(distance_image, pixel, vec4(!found ? 0.0 : hit.water ? -hit.t : hit.t));
-}
-
 void main() {
-    ivec2 pixel = regroup_pixel();
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(view.counts.xy))))
+        return;
     bool from_above = (view.counts.z & TARN_FLAG_UNDER_WATER) == 0u;
-    bool inside = all(lessThan(pixel, ivec2(view.counts.xy)));
-    Hit hit;
-#ifdef TARN_REGROUP
-    regroup_begin();
-    if (inside) {
-        Ray ray = ray_through(pixel);
-        ray.begin = texelFetch(beams, pixel >> 3, 0).r;
-        float t;
-        int state = walk_on(heights, bounds, field_of(view), ray, 1e9, from_above, 1, hit, t);
-        if (state == walk_unfinished)
-            regroup_wait(t);
-        else
-            store(pixel, state == walk_hit, hit);
-    }
-    float begin;
-    if (!regroup_next(pixel, begin))
-        return;
-    Ray ray = ray_through(pixel);
-    ray.begin = begin;
-    store(pixel, trace_field(heights, bounds, field_of(view), ray, 1e9, from_above, hit), hit);
-#else
-    if (!inside)
-        return;
     Ray ray = ray_through(pixel);
     ray.begin = texelFetch(beams, pixel >> 3, 0).r;
-    store(pixel, trace_field(heights, bounds, field_of(view), ray, 1e9, from_above, hit), hit);
-#endif
+    Hit hit;
+    float t = 0.0;
+    if (trace_field(heights, bounds, field_of(view), ray, 1e9, from_above, hit))
+        t = hit.water ? -hit.t : hit.t;
+    imageStore(distance_image, pixel, vec4(t));
 }

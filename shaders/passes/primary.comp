@@ -4,8 +4,8 @@
 // of the tile. Only walks: see lib/parts.glsl.
 #include "lib/parts.glsl"
 #include "lib/walk.glsl"
-#include "lib/regroup.glsl"
 
+layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
 layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;
 layout(binding = TARN_TEXTURE_BEAMS) uniform sampler2D beams;
@@ -45,43 +45,16 @@ void store(ivec2 pixel, Part part, float limit, bool found, Hit hit) {
 }
 
 void main() {
-    ivec2 pixel = regroup_pixel() + view.tile.xy;
-    bool inside = all(lessThan(pixel - view.tile.xy, view.tile.zw));
-    Hit hit;
-#ifdef TARN_REGROUP
-    regroup_begin();
-    if (inside) {
-        Part part = camera_part(view, pixel);
-        float limit = reach(view, part), t;
-        Ray ray = ray_of(view, part);
-        ray.begin = texelFetch(beams, pixel >> 3, 0).r;
-        int state = walk_missed;
-        if (!part.in_water || part.bed_known)
-            state = walk_on(heights, bounds, field_of(view), ray, limit, !part.in_water, 1, hit, t);
-        if (state == walk_unfinished)
-            regroup_wait(t);
-        else
-            store(pixel, part, limit, state == walk_hit, hit);
-    }
-    float begin;
-    if (!regroup_next(pixel, begin))
-        return;
-    pixel += view.tile.xy;
-    Part part = camera_part(view, pixel);
-    float limit = reach(view, part);
-    Ray ray = ray_of(view, part);
-    ray.begin = begin;
-    store(pixel, part, limit, trace_field(heights, bounds, field_of(view), ray, limit, !part.in_water, hit), hit);
-#else
-    if (!inside)
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + view.tile.xy;
+    if (any(greaterThanEqual(pixel - view.tile.xy, view.tile.zw)))
         return;
     Part part = camera_part(view, pixel);
     float limit = reach(view, part);
     Ray ray = ray_of(view, part);
     ray.begin = texelFetch(beams, pixel >> 3, 0).r;
+    Hit hit;
     bool found = false;
     if (!part.in_water || part.bed_known)
         found = trace_field(heights, bounds, field_of(view), ray, limit, !part.in_water, hit);
     store(pixel, part, limit, found, hit);
-#endif
 }

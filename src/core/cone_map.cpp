@@ -132,18 +132,21 @@ std::vector<Code> ladder(const Grid<Code>& codes, int threads) {
     return out;
 }
 
-/// Makes slopes odd where water is in the block or beside it, even elsewhere; never less steep.
+/// Makes slopes odd where water is in the block or near it, even elsewhere; never less steep.
+constexpr int near_cells = 3; // a walk looks so many cells on before it asks for the next cone
 void mark_water(const Heightfield& water, ConeMap& map, int threads) {
     const int cols = water.size().cols, rows = water.size().rows, side = 1 << map.shift;
     share_out(map.blocks.rows, threads, [&](int first, int last) {
         std::vector<unsigned char> wet(std::size_t(map.blocks.cols));
         for (int block_row = first; block_row < last; ++block_row) {
             std::fill(wet.begin(), wet.end(), static_cast<unsigned char>(0));
-            const int r0 = std::max(0, (block_row - 1) * side), r1 = std::min(rows - 1, (block_row + 2) * side);
+            const int r0 = std::max(0, block_row * side - near_cells),
+                      r1 = std::min(rows - 1, (block_row + 1) * side + near_cells);
             for (int r = r0; r <= r1; ++r)
                 for (int c = 0; c < cols; ++c)
                     if (water.codes.values[std::size_t(r) * std::size_t(cols) + std::size_t(c)] != no_water_code)
-                        for (int b = std::max(0, (c - 1) / side - 1); b <= std::min(map.blocks.cols - 1, c / side + 1); ++b)
+                        for (int b = std::max(0, (c - near_cells - 1) / side);
+                             b <= std::min(map.blocks.cols - 1, (c + near_cells) / side); ++b)
                             wet[std::size_t(b)] = 1;
             Code* texels = &map.texels[2 * std::size_t(block_row) * std::size_t(map.blocks.cols)];
             for (int b = 0; b < map.blocks.cols; ++b) {

@@ -30,7 +30,7 @@ struct ConeMap {
     double scale_m = 1;   ///< metres per code, of tops; metres per code and cell, of slopes
     double highest_m = 0; ///< no place of the surface is higher
     /// Top and slope of each block, row by row. With water, slopes are odd where there is some in the
-    /// block or in one of the eight around it, else even (one code steeper if need be).
+    /// block or within three cells of it, else even (one code steeper if need be).
     std::vector<std::uint16_t> texels;
 };
 

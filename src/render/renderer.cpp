@@ -94,16 +94,14 @@ void Renderer::use_walk(const scene::RenderSettings& settings) {
     std::string file = method.name;
     std::replace(file.begin(), file.end(), '-', '_');
     const auto root = gpu::shader_root();
-    // GPUs run rays in step, software GL a few at a time: see lib/regroup.glsl and lib/walks/cone_map.glsl.
-    const bool regroup = rays_in_step_ && walk_ == scene::Walk::cone_map;
-    std::string defined = rays_in_step_ ? "#define TARN_CONES_A_LOOK 4\n" : "";
-    if (regroup)
-        defined += "#define TARN_REGROUP\n";
+    // See lib/walks/cone_map.glsl.
+    const std::string defined =
+        rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "";
     const auto pass = [&](const char* name) {
         return gpu::ComputeProgram(gpu::load_shader(root, text("passes/", name, ".comp"),
                                                     {{"lib/walks/cone_map.glsl", "lib/walks/" + file + ".glsl"}}, defined));
     };
-    passes_.emplace(walk_, WalkPasses{pass("beams"), pass("primary"), pass("secondary"), pass("shadow"), pass("first_hit"), regroup});
+    passes_.emplace(walk_, WalkPasses{pass("beams"), pass("primary"), pass("secondary"), pass("shadow"), pass("first_hit")});
 }
 
 void Renderer::bind_walk(bool with_water) { bounds_.bind(walk_, with_water); }
@@ -225,7 +223,7 @@ void Renderer::draw_tile() {
     const WalkPasses& pass = passes_.at(walk_);
     bind_walk((block_.counts.z & TARN_FLAG_UNDER_WATER) == 0); // only from above is water met
     pass.primary.use();
-    dispatch_pixels(pass, block_.tile.z, block_.tile.w);
+    glDispatchCompute(across, down, 1);
     glMemoryBarrier(images);
     bind_walk(false);
     if (split) {
@@ -242,11 +240,6 @@ void Renderer::draw_tile() {
     glDispatchCompute(across, down, 1);
 }
 
-void Renderer::dispatch_pixels(const WalkPasses& pass, int width, int height) {
-    const int side = pass.regrouped ? 16 : 8;
-    glDispatchCompute(GLuint((width + side - 1) / side), GLuint((height + side - 1) / side), 1);
-}
-
 void Renderer::find_beams() {
     passes_.at(walk_).beams.use();
     glDispatchCompute(GLuint((beams_.width_px() + 7) / 8), GLuint((beams_.height_px() + 3) / 4), 1);
@@ -259,7 +252,7 @@ void Renderer::find_first_hits() {
     find_beams();
     const WalkPasses& pass = passes_.at(walk_);
     pass.first_hit.use();
-    dispatch_pixels(pass, int(block_.counts.x), int(block_.counts.y));
+    glDispatchCompute(groups(int(block_.counts.x)), groups(int(block_.counts.y)), 1);
 }
 
 std::vector<float> Renderer::read_first_hits() const {

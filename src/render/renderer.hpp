@@ -54,14 +54,12 @@ private:
     /// The passes that walk, with one method in them.
     struct WalkPasses {
         gpu::ComputeProgram beams, primary, secondary, shadow, first_hit;
-        bool regrouped; ///< primary and first_hit: lib/regroup.glsl
     };
 
     void upload_scene();
     void use_walk(const scene::RenderSettings& settings);
     void bind_walk(bool with_water);
     void find_beams();
-    void dispatch_pixels(const WalkPasses& pass, int width, int height);
     void set_sample(int sample, int samples);
     void draw_tile();
 

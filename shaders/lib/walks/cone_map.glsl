@@ -14,7 +14,12 @@
 
 // Cones that a ray may pass before those beside it, which may stand before a cell already, look into it.
 // GPUs run rays in step and are fastest with few; software GL with all that there are (not defined).
-// #define TARN_CONES_A_LOOK 4
+// #define TARN_CONES_A_LOOK 8
+
+// Cells looked into before cones are asked again, at most 3. Where one has to be, the next often has, too.
+#ifndef TARN_LOOKS
+#define TARN_LOOKS 3
+#endif
 
 // beam_reach — metres that all rays of a beam fly before any of them can meet something.
 //
@@ -51,20 +56,11 @@ float beam_reach(sampler2D bounds, Field field, Ray middle, float spread, bool w
 // patch costs as much as ten steps, and most that are solved too early are not hit.
 const float least_step = 0.25;
 
-// walk_on — the walk from ray.begin on, for at most so many looks into cells.
-//
-//   t        where it stands now; to go on, begin there
-//   returns  walk_hit with `hit` filled in, walk_missed, or walk_unfinished
-const int walk_missed = 0, walk_hit = 1, walk_unfinished = 2;
-#define TARN_WALK_PAUSES
-
-int walk_on(sampler2D heights, sampler2D bounds, Field field, Ray ray, float t_max, bool with_water, int looks,
-            out Hit hit, out float t) {
+bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, float t_max, bool with_water, out Hit hit) {
     Span span;
-    t = 0.0;
     if (!clip_ray(field, ray, t_max, span))
-        return walk_missed;
-    t = span.t;
+        return false;
+    float t = span.t;
     float pace = abs(span.d.x) + abs(span.d.y); // columns plus rows a metre
     float unit = with_water ? field.cone.y : field.cone.x;
     // Blocks are looked up at rounded places, by the filter unit: a ray may be this much [cells]
@@ -102,7 +98,7 @@ int walk_on(sampler2D heights, sampler2D bounds, Field field, Ray ray, float t_m
 #endif
             t += gap / closing;
             if (t >= span.t_end)
-                return walk_missed;
+                return false;
         }
         if (t > before)
             cell = cell_at(span, t);
@@ -110,25 +106,22 @@ int walk_on(sampler2D heights, sampler2D bounds, Field field, Ray ray, float t_m
         if (!look)
             continue;
 #endif
-        vec2 t_border = borders(span, cell);
-        t_out = min(min(t_border.x, t_border.y), span.t_end);
-        // Odd slopes: there is water in the block or beside it.
+        // Odd slopes: there is water within three cells.
         bool wet = with_water && fract(cone.y * 32767.5) > 0.25;
-        m = look_into(heights, field, ray, span, cell, t, t_out, wet);
+        for (int k = 0; k < TARN_LOOKS; ++k) {
+            vec2 t_border = borders(span, cell);
+            t_out = min(min(t_border.x, t_border.y), span.t_end);
+            m = look_into(heights, field, ray, span, cell, t, t_out, wet);
+            if (m.met)
+                break;
+            if (t_out >= span.t_end || --steps < 0)
+                return false;
+            t = max(t, t_out);
+            cell = beyond(span, cell, t_border);
+        }
         if (m.met)
             break;
-        if (t_out >= span.t_end || --steps < 0)
-            return walk_missed;
-        t = max(t, t_out);
-        cell = beyond(span, cell, t_border);
-        if (--looks <= 0)
-            return walk_unfinished;
     }
     hit = hit_of(ray, span, m, cell, t, t_out);
-    return walk_hit;
-}
-
-bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, float t_max, bool with_water, out Hit hit) {
-    float ignored;
-    return walk_on(heights, bounds, field, ray, t_max, with_water, 1 << 30, hit, ignored) == walk_hit;
+    return true;
 }
