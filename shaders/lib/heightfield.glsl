@@ -20,6 +20,8 @@ struct Field {
     vec2 water;        // water texel -> units: x offset, y factor
     float top;         // no node is higher
     float bottom;      // of the block of earth, below all nodes
+    float lowest;      // ground
+    float water_top;   // no water is higher
     float per_spacing; // nodes a metre
     int root;          // maximum mipmap: level whose one block covers the field
     int shift;         // cone map: blocks of 2^shift cells a side
@@ -30,7 +32,7 @@ struct Field {
 // field_of — the field that a view block describes.
 Field field_of(ViewBlock view) {
     return Field(view.grid.xy - 1.0, view.inverse_size.xy, view.units.x, view.units.yz, view.units.w, view.bounds.w,
-                 view.base.z, view.walk.x, view.walk.y, view.bounds.xy, view.bounds.z);
+                 view.slab.x, view.slab.y, view.base.z, view.walk.x, view.walk.y, view.bounds.xy, view.bounds.z);
 }
 
 // Origin and direction per metre of path: columns, rows, height [m]. Columns and rows count from the
@@ -158,6 +160,21 @@ struct Meeting {
     bool wet;       // is there water in the cell
     bool met;       // does the ray meet either surface
 };
+
+// beyond_square — the cell that a ray enters where it leaves the square of 2 radius - 1 cells around another,
+//                 given the path lengths to the square's far sides. Never a cell behind on either axis:
+//                 at a node two roundings could otherwise send a ray to and fro for ever.
+vec2 beyond_square(Span span, vec2 cell, float radius, vec2 t_border, float t_out) {
+    vec2 next = cell_at(span, t_out), stride = radius * (2.0 * span.ahead - 1.0);
+    next = mix(min(next, cell), max(next, cell), span.ahead);
+    return t_border.x < t_border.y ? vec2(cell.x + stride.x, next.y) : vec2(next.x, cell.y + stride.y);
+}
+
+// hit_at — a hit after t metres, wherever that is: for methods that find it by sampling.
+Hit hit_at(Field field, Ray ray, Span span, float t, bool water) {
+    vec2 cell = clamp(floor(span.o + t * span.d), span.low, span.high);
+    return Hit(t, water, ivec2(cell + ray.base), clamp(span.o - cell + t * span.d, 0.0, 1.0));
+}
 
 // look_into — what a ray does in a cell, between path lengths t and t_out.
 //

@@ -64,10 +64,11 @@ struct ViewBlock {
     vec4 units;           // x: units a metre, yz: of water: offset and factor on the texel, w: the top
     vec4 bounds;          // cone map, units a texel: x: of the ground, y: of the surface;
                           // z: setting of the walk, w: the bottom
+    vec4 slab;            // x: lowest ground, y: highest water, zw: -
     ivec4 walk;           // x: level of the root block, y: cone map's blocks are 2^y cells a side, zw: -
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewBlock) == 368 && offsetof(ViewBlock, walk) == 352, "std140 layout");
+static_assert(sizeof(ViewBlock) == 384 && offsetof(ViewBlock, walk) == 368, "std140 layout");
 } // namespace tarn::shared
 #endif

@@ -44,6 +44,16 @@ void Texture2D::download(GLenum components, GLenum type, void* out, std::size_t 
     glGetTextureImage(id(), 0, components, type, static_cast<GLsizei>(bytes), out);
 }
 
+Sampler::Sampler() {
+    GLuint id = 0;
+    glCreateSamplers(1, &id);
+    name_ = Name<delete_sampler>(id);
+    glSamplerParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glSamplerParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glSamplerParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glSamplerParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
 Buffer::Buffer(std::size_t bytes, const void* data) {
     GLuint id = 0;
     glCreateBuffers(1, &id);

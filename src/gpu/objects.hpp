@@ -33,6 +33,7 @@ private:
 
 inline void delete_texture(GLuint id) { glDeleteTextures(1, &id); }
 inline void delete_buffer(GLuint id) { glDeleteBuffers(1, &id); }
+inline void delete_sampler(GLuint id) { glDeleteSamplers(1, &id); }
 inline void delete_query(GLuint id) { glDeleteQueries(1, &id); }
 inline void delete_program(GLuint id) { glDeleteProgram(id); }
 
@@ -66,6 +67,17 @@ private:
     Name<delete_texture> name_;
     GLenum format_ = 0;
     int width_px_ = 0, height_px_ = 0;
+};
+
+/// Bilinear look-up, edges clamped, for a texture that is made without: bound to a unit it takes precedence.
+class Sampler {
+public:
+    Sampler();
+    void bind(GLuint unit) const { glBindSampler(unit, name_.get()); }
+    static void unbind(GLuint unit) { glBindSampler(unit, 0); }
+
+private:
+    Name<delete_sampler> name_;
 };
 
 /// Immutable buffer that the CPU may rewrite.

@@ -1,6 +1,7 @@
 #include "render/field_bounds.hpp"
 
 #include "core/cone_map.hpp"
+#include "core/safety_radius.hpp"
 
 #include "shared/view_block.h"
 
@@ -36,23 +37,59 @@ void FieldBounds::prepare(scene::Walk walk, bool with_water) {
             build_maxima();
         break;
     case scene::Walk::cone_map:
+    case scene::Walk::cone_steps:
         if (with_water && surface_cones_.id() == 0)
             surface_cones_ = build_cones(true, surface_cone_m_);
         if (!with_water && ground_cones_.id() == 0)
             ground_cones_ = build_cones(false, ground_cone_m_);
         break;
-    default:
+    case scene::Walk::safety_exact:
+    case scene::Walk::safety_radius:
+        if (radii_.id() == 0)
+            build_radii();
         break;
+    case scene::Walk::grid:
+    case scene::Walk::uniform_steps:
+    case scene::Walk::direction_steps:
+        break; // need nothing but the heights
     }
 }
 
 void FieldBounds::bind(scene::Walk walk, bool with_water) const {
-    if (walk == scene::Walk::maximum_mipmap)
+    gpu::Sampler::unbind(TARN_TEXTURE_BOUNDS);
+    gpu::Sampler::unbind(TARN_TEXTURE_HEIGHTS);
+    switch (walk) {
+    case scene::Walk::maximum_mipmap:
         maxima_.bind(TARN_TEXTURE_BOUNDS);
-    else if (walk == scene::Walk::cone_map)
+        break;
+    case scene::Walk::cone_map:
+    case scene::Walk::cone_steps:
         (with_water ? surface_cones_ : ground_cones_).bind(TARN_TEXTURE_BOUNDS);
-    else
+        break;
+    case scene::Walk::safety_radius:
+        smooth_.bind(TARN_TEXTURE_HEIGHTS);
+        [[fallthrough]];
+    case scene::Walk::safety_exact:
+        radii_.bind(TARN_TEXTURE_BOUNDS);
+        break;
+    case scene::Walk::uniform_steps:
+    case scene::Walk::direction_steps:
+        smooth_.bind(TARN_TEXTURE_BOUNDS);
+        [[fallthrough]];
+    case scene::Walk::grid:
         heights_.bind(TARN_TEXTURE_BOUNDS);
+        break;
+    }
+}
+
+void FieldBounds::build_radii() {
+    const Grid<std::uint8_t> radii =
+        scene_.safety_radii ? *scene_.safety_radii : safety_radii(scene_.ground);
+    radii_ = gpu::Texture2D(GL_R8, radii.size.cols, radii.size.rows, 1, gpu::Filter::nearest,
+                            "safety radii");
+    radii_.upload(GL_RED, GL_UNSIGNED_BYTE, radii.values.data());
+    bytes_ += radii.values.size();
+    gpu::check_gl("uploading the safety radii");
 }
 
 void FieldBounds::build_maxima() {

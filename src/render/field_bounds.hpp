@@ -34,11 +34,13 @@ public:
 
 private:
     void build_maxima();
+    void build_radii();
     gpu::Texture2D build_cones(bool with_water, double& cone_m);
 
     const scene::Scene& scene_;
     const gpu::Texture2D& heights_;
-    gpu::Texture2D maxima_, ground_cones_, surface_cones_;
+    gpu::Texture2D maxima_, ground_cones_, surface_cones_, radii_;
+    gpu::Sampler smooth_;
     double ground_cone_m_ = 0.0, surface_cone_m_ = 0.0;
     std::size_t bytes_ = 0;
 };

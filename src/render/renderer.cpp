@@ -65,6 +65,12 @@ void Renderer::upload_scene() {
     block_.inverse_size = {1.0f / float(size.cols), 1.0f / float(size.rows), 1.0f, 1.0f};
     block_.units = {per_m, block_.heights.z * per_m, block_.heights.w * per_m, block_.grid.w * per_m};
     block_.bounds.w = block_.forward.w * per_m;
+    double water_top = -1e6; // where there is none: below everything
+    for (const std::uint16_t code : water.codes.values)
+        if (code != no_water_code)
+            water_top = std::max(water_top, water.offset_m + water.scale_m * code);
+    block_.slab = {float(ground.min_elevation_m() - ground.offset_m) * per_m,
+                   float(water_top - ground.offset_m) * per_m, 0.0f, 0.0f};
 
     if (scene_.ortho) {
         const Ortho& o = *scene_.ortho;

@@ -9,6 +9,7 @@
 #include "scene/camera.hpp"
 #include "scene/water_optics.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,8 @@ struct Scene {
     std::vector<NamedCamera> cameras;
     std::optional<Ortho> ortho;
     ImportReport report;
+    /// Of the ground, a value for each cell (core/safety_radius.hpp); made when needed if it is not here.
+    std::optional<Grid<std::uint8_t>> safety_radii;
 
     /// The lake whose level is nearest to `level_m`.
     const LakeRecord& lake_at_level(double level_m) const;

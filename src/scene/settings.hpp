@@ -22,7 +22,7 @@ enum class Walk {
     safety_radius,   ///< Baboud & Decoret 2006
     uniform_steps,   ///< Policarpo et al. 2005
     direction_steps, ///< Tatarchuk 2006
-    relaxed_cone,    ///< Policarpo & Oliveira 2007
+    cone_steps,      ///< Dummer 2006
 };
 
 struct WalkMethod {

@@ -1,0 +1,201 @@
+#include "core/safety_radius.hpp"
+
+#include "core/parallel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tarn {
+
+namespace {
+
+using Code = std::uint16_t;
+
+/// Four corner heights of a cell.
+struct Corners {
+    int nw, ne, sw, se;
+    int highest() const { return std::max(std::max(nw, ne), std::max(sw, se)); }
+};
+
+struct Codes {
+    const Code* values;
+    int cols;
+    Corners cell(int c, int r) const {
+        const Code* p = values + std::size_t(r) * std::size_t(cols) + std::size_t(c);
+        return {p[0], p[1], p[cols], p[cols + 1]};
+    }
+};
+
+/// The highest that any tangent plane of cell D comes over any place of a cell `across` columns and
+/// `down` rows from it.
+int greatest_tangent(const Corners& d, int across, int down) {
+    const int east_n = d.ne - d.nw, east_s = d.se - d.sw, south_w = d.sw - d.nw,
+              south_e = d.se - d.ne;
+    const auto plane = [&](int z, int east, int south, int u, int v) {
+        return z + east * ((east > 0 ? across + 1 : across) - u) +
+               south * ((south > 0 ? down + 1 : down) - v);
+    };
+    return std::max(std::max(plane(d.nw, east_n, south_w, 0, 0), plane(d.ne, east_n, south_e, 1, 0)),
+                    std::max(plane(d.sw, east_s, south_w, 0, 1), plane(d.se, east_s, south_e, 1, 1)));
+}
+
+/// Bounds over a block of cells: nothing in it is higher or steeper.
+struct Block {
+    int highest = 0;
+    int east_low = 0, east_high = 0, south_low = 0, south_high = 0; ///< slopes along grid lines
+};
+
+struct Level {
+    int cols = 0, rows = 0;
+    std::vector<Block> blocks;
+};
+
+Block joined(const Block& a, const Block& b) {
+    return {std::max(a.highest, b.highest),       std::min(a.east_low, b.east_low),
+            std::max(a.east_high, b.east_high),   std::min(a.south_low, b.south_low),
+            std::max(a.south_high, b.south_high)};
+}
+
+/// Level k: blocks of 2^(k+1) cells a side.
+std::vector<Level> pyramid(const Codes& codes, int cells_across, int cells_down, int threads) {
+    std::vector<Level> levels;
+    for (int k = 0; k < 6; ++k) {
+        Level level;
+        const int side = 2 << k;
+        level.cols = (cells_across + side - 1) / side;
+        level.rows = (cells_down + side - 1) / side;
+        level.blocks.resize(std::size_t(level.cols) * std::size_t(level.rows));
+        const Level* finer = levels.empty() ? nullptr : &levels.back();
+        share_out(level.rows, threads, [&](int first, int last) {
+            for (int r = first; r < last; ++r)
+                for (int c = 0; c < level.cols; ++c) {
+                    bool any = false;
+                    Block sum;
+                    const auto add = [&](const Block& b) {
+                        sum = any ? joined(sum, b) : b;
+                        any = true;
+                    };
+                    for (int j = 0; j < 2; ++j)
+                        for (int i = 0; i < 2; ++i) {
+                            const int cc = 2 * c + i, rr = 2 * r + j;
+                            if (finer) {
+                                if (cc < finer->cols && rr < finer->rows)
+                                    add(finer->blocks[std::size_t(rr) * std::size_t(finer->cols) +
+                                                      std::size_t(cc)]);
+                            } else if (cc < cells_across && rr < cells_down) {
+                                const Corners d = codes.cell(cc, rr);
+                                const int en = d.ne - d.nw, es = d.se - d.sw, sw = d.sw - d.nw,
+                                          se = d.se - d.ne;
+                                add({d.highest(), std::min(en, es), std::max(en, es),
+                                     std::min(sw, se), std::max(sw, se)});
+                            }
+                        }
+                    level.blocks[std::size_t(r) * std::size_t(level.cols) + std::size_t(c)] = sum;
+                }
+        });
+        levels.push_back(std::move(level));
+    }
+    return levels;
+}
+
+} // namespace
+
+Grid<std::uint8_t> safety_radii(const Heightfield& heights, int threads) {
+    const int across = heights.size().cols - 1, down = heights.size().rows - 1;
+    const Codes codes{heights.codes.values.data(), heights.size().cols};
+    const std::vector<Level> levels = pyramid(codes, across, down, threads);
+
+    // Is the whole ring of cells `n` away harmless to a ray that starts over cell (c, r)?
+    const auto ring_is_safe = [&](int c, int r, int highest, int n) {
+        const int c0 = std::max(c - n, 0), c1 = std::min(c + n, across - 1);
+        const auto safe = [&](int cc, int rr) {
+            return greatest_tangent(codes.cell(cc, rr), c - cc, r - rr) <= highest;
+        };
+        for (int rr = std::max(r - n, 0); rr <= std::min(r + n, down - 1); ++rr)
+            if (rr == r - n || rr == r + n) {
+                for (int cc = c0; cc <= c1; ++cc)
+                    if (!safe(cc, rr))
+                        return false;
+            } else {
+                if (c - n >= 0 && !safe(c - n, rr))
+                    return false;
+                if (c + n < across && !safe(c + n, rr))
+                    return false;
+            }
+        return true;
+    };
+    // The same for the whole square of `n` cells around a tile of 2^shift cells a side, by bounds over
+    // blocks of 2^(k+1) cells. The tile itself and what is near lie in these blocks, too: bounds only get
+    // larger by that.
+    const auto square_is_safe = [&](int c, int r, int tile, int highest, int n, int k) {
+        const Level& level = levels[std::size_t(k)];
+        const int side = 2 << k;
+        const int c1 = std::min(c + tile, across), r1 = std::min(r + tile, down); // nodes
+        for (int br = std::max(r - n, 0) / side; br <= std::min(r1 - 1 + n, down - 1) / side; ++br)
+            for (int bc = std::max(c - n, 0) / side; bc <= std::min(c1 - 1 + n, across - 1) / side;
+                 ++bc) {
+                const Block& b =
+                    level.blocks[std::size_t(br) * std::size_t(level.cols) + std::size_t(bc)];
+                // From a node of the block to a node of the tile: columns and rows, least and most.
+                const int x0 = c - std::min(bc * side + side, across), x1 = c1 - bc * side;
+                const int y0 = r - std::min(br * side + side, down), y1 = r1 - br * side;
+                const int east = std::max(std::max(b.east_high * x1, b.east_low * x0),
+                                          std::max(b.east_high * x0, b.east_low * x1));
+                const int south = std::max(std::max(b.south_high * y1, b.south_low * y0),
+                                           std::max(b.south_high * y0, b.south_low * y1));
+                if (b.highest + east + south > highest)
+                    return false;
+            }
+        return true;
+    };
+    // Greatest certified value of a tile, 0 or one of 8, 16, ... 128, 255.
+    const auto certified = [&](int c, int r, int tile, int highest) {
+        int n = 0;
+        for (int k = 0; k < 6; ++k) {
+            const int wanted = std::min(8 << k, 255);
+            if (!square_is_safe(c, r, tile, highest, wanted - 1, k))
+                break;
+            n = wanted;
+        }
+        return n;
+    };
+
+    Grid<std::uint8_t> out({across, down});
+    constexpr int tile = 8;
+    const auto one_cell = [&](int c, int r) {
+        const int highest = codes.cell(c, r).highest();
+        int n = 0;
+        while (n < 4 && ring_is_safe(c, r, highest, n))
+            ++n;
+        return n == 4 ? std::max(n, certified(c, r, 1, highest)) : n;
+    };
+    share_out((down + tile - 1) / tile, threads, [&](int first, int last) {
+        for (int r = first * tile; r < std::min(last * tile, down); r += tile)
+            for (int c = 0; c < across; c += tile) {
+                const int c1 = std::min(c + tile, across), r1 = std::min(r + tile, down);
+                int lowest = 65535; // of the cells' highest nodes
+                for (int rr = r; rr < r1; ++rr)
+                    for (int cc = c; cc < c1; ++cc)
+                        lowest = std::min(lowest, codes.cell(cc, rr).highest());
+                // Wide plains (lakes) at once; where the tile gets little, each cell for itself.
+                const int together = certified(c, r, tile, lowest);
+                for (int rr = r; rr < r1; ++rr)
+                    for (int cc = c; cc < c1; ++cc)
+                        out.values[std::size_t(rr) * std::size_t(across) + std::size_t(cc)] =
+                            static_cast<std::uint8_t>(together >= 16 ? together : one_cell(cc, rr));
+            }
+    });
+    return out;
+}
+
+int water_safety_radius(double amplitude_m, double shortest_wave_m, double spacing_m,
+                        double quantum_m) {
+    if (amplitude_m <= 0.0)
+        return 255;
+    // A chord of length l cuts a crest of curvature a k^2 to a depth of a k^2 l^2 / 8.
+    const double k = 2.0 * 3.14159265358979323846 / shortest_wave_m;
+    const double chord_m = std::sqrt(8.0 * quantum_m / (amplitude_m * k * k));
+    return static_cast<int>(std::clamp(std::floor(chord_m / (2.0 * spacing_m)), 1.0, 255.0));
+}
+
+} // namespace tarn
