@@ -17,6 +17,8 @@ using ivec4 = glm::ivec4;
 
 #define TARN_BLOCK_VIEW 0     // uniform block ViewBlock
 #define TARN_BUFFER_LAKES 0   // storage buffer of vec4: x level [m, block heights], y 1 = bed known
+#define TARN_BUFFER_RAYS 1    // passes/trace_rays.comp
+#define TARN_BUFFER_ANSWERS 2 // passes/trace_rays.comp
 #define TARN_TEXTURE_HEIGHTS 0 // RG16: ground and water codes, one texel a node
 #define TARN_TEXTURE_BOUNDS 1  // what the walk skips by: see its file in lib/walks
 #define TARN_TEXTURE_SKY 2     // RGBA32F: sky radiance

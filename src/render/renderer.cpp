@@ -91,10 +91,10 @@ void Renderer::upload_scene() {
     gpu::check_gl("uploading the scene");
 }
 
-void Renderer::use_walk(const scene::RenderSettings& settings) {
-    walk_ = settings.walk;
+void Renderer::use_walk(scene::Walk walk, double setting) {
+    walk_ = walk;
     const scene::WalkMethod& method = scene::walk_method(walk_);
-    block_.bounds.z = float(settings.walk_setting > 0.0 ? settings.walk_setting : method.default_setting);
+    block_.bounds.z = float(setting > 0.0 ? setting : method.default_setting);
     if (passes_.count(walk_))
         return;
     std::string file = method.name;
@@ -107,7 +107,7 @@ void Renderer::use_walk(const scene::RenderSettings& settings) {
         return gpu::ComputeProgram(gpu::load_shader(root, text("passes/", name, ".comp"),
                                                     {{"lib/walks/cone_map.glsl", "lib/walks/" + file + ".glsl"}}, defined));
     };
-    passes_.emplace(walk_, WalkPasses{pass("beams"), pass("primary"), pass("secondary"), pass("shadow"), pass("first_hit")});
+    passes_.emplace(walk_, WalkPasses{pass("beams"), pass("primary"), pass("secondary"), pass("shadow"), pass("first_hit"), pass("trace_rays")});
 }
 
 void Renderer::bind_walk(bool with_water) { bounds_.bind(walk_, with_water); }
@@ -199,7 +199,7 @@ void Renderer::prepare(const scene::View& view) {
     for (GLuint k = 0; k < 3; ++k)
         hits_[k].bind_image(TARN_IMAGE_HITS + k, GL_READ_WRITE);
     const bool from_above = (flags & TARN_FLAG_UNDER_WATER) == 0;
-    use_walk(settings);
+    use_walk(settings.walk, settings.walk_setting);
     if (settings.shadows || settings.reflection || settings.refraction)
         bounds_.prepare(walk_, false);
     bind_field(walk_, from_above);
@@ -259,6 +259,36 @@ void Renderer::find_first_hits() {
     const WalkPasses& pass = passes_.at(walk_);
     pass.first_hit.use();
     glDispatchCompute(groups(int(block_.counts.x)), groups(int(block_.counts.y)), 1);
+}
+
+std::vector<FieldHit> Renderer::trace_rays(std::span<const FieldRay> rays, scene::Walk walk,
+                                           double setting, bool with_water, double t_max) {
+    use_walk(walk, setting);
+    bind_field(walk, with_water);
+    std::vector<FieldHit> hits(rays.size());
+    constexpr std::size_t batch = std::size_t(1) << 21; // 96 MB on the GPU
+    std::vector<glm::vec4> packed;
+    for (std::size_t first = 0; first < rays.size(); first += batch) {
+        const std::size_t count = std::min(batch, rays.size() - first);
+        packed.clear();
+        for (const FieldRay& ray : rays.subspan(first, count)) {
+            packed.emplace_back(ray.origin, 0.0f);
+            packed.emplace_back(ray.direction, 0.0f);
+        }
+        const gpu::Buffer in(packed.size() * sizeof packed[0], packed.data());
+        const gpu::Buffer out(count * sizeof(FieldHit), nullptr);
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_RAYS, in.id());
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_ANSWERS, out.id());
+        passes_.at(walk).trace_rays.use();
+        glUniform1i(0, with_water);
+        glUniform1f(1, float(t_max));
+        const GLuint groups_of_64 = GLuint((count + 63) / 64);
+        glDispatchCompute(std::min<GLuint>(groups_of_64, 1024), (groups_of_64 + 1023) / 1024, 1);
+        glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+        glGetNamedBufferSubData(out.id(), 0, GLsizeiptr(count * sizeof(FieldHit)), &hits[first]);
+        gpu::check_gl("tracing rays");
+    }
+    return hits;
 }
 
 std::vector<float> Renderer::read_first_hits() const {

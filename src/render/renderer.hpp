@@ -11,10 +11,24 @@
 
 #include <functional>
 #include <map>
+#include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace tarn::render {
+
+/// A ray as the GPU gets it, in single precision.
+struct FieldRay {
+    glm::vec3 origin;    ///< columns, rows, metres above the ground's offset_m
+    glm::vec3 direction; ///< unit, scene axes
+};
+
+struct FieldHit {
+    float t = 0;     ///< metres
+    float kind = 0;  ///< 0 nothing, 1 ground, 2 water
+    float col = 0, row = 0;
+};
 
 /// Holds one scene on the GPU and draws views of it. The context must stay current.
 class Renderer {
@@ -39,6 +53,11 @@ public:
     void find_first_hits();
     std::vector<float> read_first_hits() const;
 
+    /// First hits of any rays.
+    /// @param with_water  stop at the water, too
+    std::vector<FieldHit> trace_rays(std::span<const FieldRay> rays, scene::Walk walk, double setting,
+                                     bool with_water, double t_max = 1e9);
+
     /// Binds heights, the bounds of a walk and the view block, for a program of one's own (tests).
     void bind_field(scene::Walk walk, bool with_water);
 
@@ -53,11 +72,11 @@ public:
 private:
     /// The passes that walk, with one method in them.
     struct WalkPasses {
-        gpu::ComputeProgram beams, primary, secondary, shadow, first_hit;
+        gpu::ComputeProgram beams, primary, secondary, shadow, first_hit, trace_rays;
     };
 
     void upload_scene();
-    void use_walk(const scene::RenderSettings& settings);
+    void use_walk(scene::Walk walk, double setting);
     void bind_walk(bool with_water);
     void find_beams();
     void set_sample(int sample, int samples);
