@@ -212,7 +212,9 @@ Verdict judge_hits(const scene::Scene& scene, const std::vector<TestRay>& rays,
                 }
             } else if (with_water && (got.kind > 1.5f) != hit->water) {
                 // Where a quantum or a hair aside decides which is met, either may be named.
-                bool named = false;
+                const glm::dvec3 p = hit->point;
+                bool named = std::abs(scene.ground.elevation_m(p.x, p.y) -
+                                      scene.water.elevation_m(p.x, p.y)) < 2 * quantum;
                 for (const auto& beside : {shifted(quantum), shifted(-quantum), shifted(0, aside),
                                            shifted(0, -aside), shifted(0, 0, aside),
                                            shifted(0, 0, -aside)})

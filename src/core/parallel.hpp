@@ -11,7 +11,7 @@ namespace tarn {
 template <class Work>
 void share_out(int count, int threads, Work work) {
     const int cores = threads > 0 ? threads : std::max(1, int(std::thread::hardware_concurrency()));
-    const int parts = std::max(1, std::min(cores, count));
+    const int parts = std::clamp(count / 16, 1, cores); // a thread costs as much as some rows
     const auto bound = [&](int k) { return int(static_cast<long long>(count) * k / parts); };
     std::vector<std::jthread> others;
     for (int k = 1; k < parts; ++k)

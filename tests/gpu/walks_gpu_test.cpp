@@ -3,6 +3,7 @@
 #include "support/gpu_function.hpp"
 
 #include <gtest/gtest.h>
+#include <random>
 
 using namespace tarn;
 
@@ -58,4 +59,61 @@ TEST_P(WalksGpu, ExactMethodsMissNothing) {
     const auto& field = fields[std::size_t(GetParam())];
     expect_exact(field.name, field.scene, rays_a_class());
 }
+
+TEST(WalksGpu, SizesThatAreNoPowersOfTwoAndLongStrips) {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    for (const auto& [cols, rows] : std::vector<std::pair<int, int>>{
+             {2, 2}, {3, 2}, {5, 5}, {6, 17}, {2, 300}, {401, 3}, {65, 66}, {257, 130}})
+        expect_exact(text(cols, "x", rows),
+                     bench::field_scene({cols, rows}, 3.0, [&](int, int) { return 4.0 * unit(random); }),
+                     600);
+}
+
+TEST(WalksGpu, PlateausAtTheWatersLevelAndThinFilms) {
+    expect_exact("thin films",
+                 bench::field_scene({60, 60}, 10.0,
+                                    [](int c, int r) {
+                                        return c < 20   ? 99.0
+                                               : c < 40 ? 100.0
+                                                        : 100.0 + 0.001 * (r % 3);
+                                    },
+                                    100.0),
+                 5'000);
+}
+
+// The same for devices that run rays in step: another loop, see lib/walks/cone_map.glsl.
+TEST(WalksGpu, RaysInStepFindTheSame) {
+    test_support::context();
+    for (const auto& field : bench::adversarial_fields()) {
+        render::Renderer one_by_one(field.scene, false), in_step(field.scene, true);
+        auto rays = bench::make_rays(field.scene, bench::RayClass::any, 20'000, 5);
+        const auto rounded = bench::round_rays(field.scene, rays);
+        const auto a = one_by_one.trace_rays(rounded, scene::Walk::cone_map, 0.0, true);
+        const auto b = in_step.trace_rays(rounded, scene::Walk::cone_map, 0.0, true);
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            ASSERT_EQ(a[i].kind, b[i].kind) << field.name;
+            ASSERT_NEAR(a[i].t, b[i].t, 1e-5 * a[i].t + 1e-3) << field.name;
+        }
+    }
+}
+
+// Not exact, and known to be: each approximate method does fail here, or its entry in the failure table
+// would be wrong.
+TEST(WalksGpu, ApproximateMethodsFailWhereTheirFilesSayThatTheyDo) {
+    test_support::context();
+    for (const auto& field : bench::adversarial_fields()) {
+        if (field.name != "needles" && field.name != "spikes" && field.name != "rough")
+            continue;
+        render::Renderer renderer(field.scene);
+        auto rays = bench::make_rays(field.scene, bench::RayClass::any, 20'000, 3);
+        const auto rounded = bench::round_rays(field.scene, rays);
+        for (const scene::WalkMethod& method : scene::walk_methods()) {
+            const auto got = renderer.trace_rays(rounded, method.walk, 0.0, false);
+            const int failures = bench::judge_hits(field.scene, rays, got, false).failures();
+            EXPECT_EQ(failures == 0, method.exact) << method.name << " on " << field.name;
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(AllFields, WalksGpu, ::testing::Range(0, 8));
