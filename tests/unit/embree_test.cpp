@@ -83,7 +83,8 @@ TEST(Embree, FindsWhatTheReferenceFinds) {
             for (int c = 0; c + 1 < g.size().cols; ++c)
                 twist = std::max(twist, std::abs(g.elevation_m(Node{c, r}) - g.elevation_m(Node{c + 1, r}) -
                                                  g.elevation_m(Node{c, r + 1}) + g.elevation_m(Node{c + 1, r + 1})));
-        const double mesh_error_m = 0.25 * twist / (cut * cut) + 1e-4;
+        // ... and Embree counts in float: some 6e-8 of a kilometre for origin, direction and vertex each.
+        const double mesh_error_m = 0.25 * twist / (cut * cut) + 5e-4;
         long judged = 0, hits = 0, lost = 0;
         for (const auto kind : {bench::RayClass::any, bench::RayClass::straight_down, bench::RayClass::through_node,
                                 bench::RayClass::grazing}) {
@@ -108,8 +109,10 @@ TEST(Embree, FindsWhatTheReferenceFinds) {
                         farthest = std::max(farthest, t);
                     }
                 double got = mesh.first_hit(ray);
-                if (!std::isfinite(got) && std::isfinite(farthest)) {
-                    // Embree itself loses a ray in some ten thousand at a vertex; a hair aside it does not.
+                if (got > farthest * (1 + 1e-5) + 1e-3) {
+                    // Embree loses some of the rays that are aimed exactly at a vertex of its mesh, even in
+                    // its robust mode; a hair aside it does not. No others.
+                    ASSERT_EQ(kind, bench::RayClass::through_node) << field.name;
                     ++lost;
                     got = mesh.first_hit({ray.origin + glm::dvec3(aside, 0.3 * aside, 0), ray.direction});
                 }
@@ -121,7 +124,7 @@ TEST(Embree, FindsWhatTheReferenceFinds) {
         }
         EXPECT_GT(hits, judged / 5) << field.name;
         EXPECT_GT(judged, 3'000) << field.name;
-        EXPECT_LT(lost, 10) << field.name;
+        EXPECT_LT(lost, 40) << field.name;
         std::printf("%s: %ld rays, %ld hits, %ld lost by Embree at vertices\n", field.name.c_str(), judged, hits, lost);
     }
 }
