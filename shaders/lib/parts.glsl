@@ -16,6 +16,7 @@ const uint end_ground = 1u;    // land or bed
 const uint end_surface = 2u;   // the water's surface: parts 1 and 2 go on from here
 const uint end_lit = 4u;       // the sun reaches that ground
 const uint end_bed_known = 8u; // the lake met, or dived in, has a bed
+const uint end_overlay = 16u;  // something rasterised, before ground and surface
 
 struct End {
     float t;      // path length [m]; where nothing was met, the reach of the part

@@ -1,6 +1,6 @@
 #version 450 core
 // passes/primary.comp — part 0 of every path: from the camera to the first surface.
-// Reads heights and bounds; writes hits 0 and, for the first sample, distances. One invocation a pixel
+// Reads heights, bounds, beams and overlay; writes hits 0 and, for the first sample, distances. One invocation a pixel
 // of the tile. Only walks: see lib/parts.glsl.
 #include "lib/parts.glsl"
 #include "lib/walk.glsl"
@@ -8,6 +8,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
 layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;
+layout(binding = TARN_TEXTURE_OVERLAY) uniform sampler2D overlay;
 layout(binding = TARN_TEXTURE_BEAMS) uniform sampler2D beams;
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
 layout(binding = TARN_BUFFER_LAKES, std430) readonly buffer Lakes { vec4 lakes[]; };
@@ -29,12 +30,23 @@ bool bed_is_known(float level) {
     return lakes[low].y > 0.5;
 }
 
-void store(ivec2 pixel, Part part, float limit, bool found, Hit hit) {
+// How far away something rasterised is in this pixel; far_m if there is nothing.
+float overlay_distance(ivec2 pixel) {
+    if ((view.counts.z & TARN_FLAG_OVERLAY) == 0u)
+        return far_m;
+    float t = texelFetch(overlay, pixel, 0).a;
+    return t > 0.0 ? t : far_m;
+}
+
+void store(ivec2 pixel, Part part, float limit, float overlay_t, bool found, Hit hit) {
     End end = End(limit, ivec2(0), vec2(0.0), 0u);
     if (found) {
         end = End(hit.t, hit.cell, hit.inside, hit.water ? end_surface : end_ground);
         if (hit.water && bed_is_known(part.origin.z + hit.t * part.direction.z))
             end.flags |= end_bed_known;
+    } else if (overlay_t <= limit && overlay_t < far_m) {
+        end.t = overlay_t;
+        end.flags = end_overlay;
     } else if (part.in_water && to_surface(part) <= view.backscattering.w) {
         end.flags = end_surface | (part.bed_known ? end_bed_known : 0u);
         place_at(view, part, limit, end.cell, end.inside);
@@ -49,12 +61,12 @@ void main() {
     if (any(greaterThanEqual(pixel - view.tile.xy, view.tile.zw)))
         return;
     Part part = camera_part(view, pixel);
-    float limit = reach(view, part);
+    float limit = reach(view, part), overlay_t = overlay_distance(pixel);
     Ray ray = ray_of(view, part);
     ray.begin = texelFetch(beams, pixel >> 3, 0).r;
     Hit hit;
     bool found = false;
     if (!part.in_water || part.bed_known)
-        found = trace_field(heights, bounds, field_of(view), ray, limit, !part.in_water, hit);
-    store(pixel, part, limit, found, hit);
+        found = trace_field(heights, bounds, field_of(view), ray, min(limit, overlay_t), !part.in_water, hit);
+    store(pixel, part, limit, overlay_t, found, hit);
 }

@@ -13,6 +13,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
 layout(binding = TARN_TEXTURE_SKY) uniform sampler2D sky_table;
 layout(binding = TARN_TEXTURE_ORTHO) uniform sampler2D ortho;
+layout(binding = TARN_TEXTURE_OVERLAY) uniform sampler2D overlay;
 layout(binding = TARN_IMAGE_RADIANCE, rgba32f) uniform image2D radiance_image;
 layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform readonly uimage2D hits[3];
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
@@ -102,7 +103,7 @@ vec3 part_radiance(Part part, End end, float before_m, out vec3 remaining) {
     }
     if ((end.flags & end_ground) != 0u)
         radiance += remaining * ground_radiance(part, end, before_m + end.t);
-    else if ((end.flags & end_surface) == 0u && !part.in_water)
+    else if ((end.flags & (end_surface | end_overlay)) == 0u && !part.in_water)
         radiance += sky(part.direction);
     return radiance;
 }
@@ -116,6 +117,8 @@ void main() {
     End first_end = unpack_end(imageLoad(hits[0], local));
     vec3 remaining;
     vec3 radiance = part_radiance(first, first_end, 0.0, remaining);
+    if ((first_end.flags & end_overlay) != 0u)
+        radiance += remaining * texelFetch(overlay, pixel, 0).rgb;
     if ((first_end.flags & end_surface) != 0u)
         for (int number = 1; number < 3; ++number) {
             Part part = split_part(view, first, first_end, number);

@@ -23,6 +23,7 @@ using ivec4 = glm::ivec4;
 #define TARN_TEXTURE_BOUNDS 1  // what the walk skips by: see its file in lib/walks
 #define TARN_TEXTURE_SKY 2     // RGBA32F: sky radiance
 #define TARN_TEXTURE_ORTHO 3   // SRGB8_ALPHA8: orthophoto
+#define TARN_TEXTURE_OVERLAY 5 // RGBA32F: rasterised things: radiance, and distance [m] in alpha, 0 = none
 #define TARN_TEXTURE_BEAMS 4   // R32F: free path of each tile of 8 x 8 pixels [m]
 #define TARN_IMAGE_RADIANCE 0  // rgba32f
 #define TARN_IMAGE_DISTANCE 1  // r32f
@@ -37,6 +38,7 @@ using ivec4 = glm::ivec4;
 #define TARN_FLAG_SUN_DISC 16u
 #define TARN_FLAG_ORTHO 32u
 #define TARN_FLAG_UNDER_WATER 64u
+#define TARN_FLAG_OVERLAY 128u
 
 struct ViewBlock {
     vec4 camera;          // xyz: position from the node `base` (grid), w: angle of a pixel [rad]

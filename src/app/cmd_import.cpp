@@ -6,6 +6,7 @@
 #include "app/report.hpp"
 #include "app/view_options.hpp"
 #include "core/error.hpp"
+#include "core/safety_radius.hpp"
 #include "core/text.hpp"
 #include "dem/import.hpp"
 #include "dem/write.hpp"
@@ -16,6 +17,7 @@
 #include "scene_files/scene_folder.hpp"
 #include "scene_files/scene_json.hpp"
 
+#include <future>
 #include <iostream>
 #include <memory>
 
@@ -80,6 +82,8 @@ int run_import(Words& words) {
     scene.validate();
 
     progress.report(0.95, "writing");
+    // On the other cores while the rasters are compressed.
+    auto radii = std::async(std::launch::async, [&scene] { return safety_radii(scene.ground); });
     dem::write_heightfield(folder.path() / files.ground, scene.ground, scene.frame, "ground",
                            false);
     dem::write_heightfield(folder.path() / files.water, scene.water, scene.frame, "water level",
@@ -88,6 +92,9 @@ int run_import(Words& words) {
         files.ortho = "ortho.tif";
         dem::write_ortho(folder.path() / files.ortho, *scene.ortho, scene.frame);
     }
+    files.safety_ground = "safety_ground.tif";
+    dem::write_safety_radii(folder.path() / files.safety_ground, radii.get(), scene.ground,
+                            scene.frame);
     image::write_png(folder.path() / "preview.png", draw_preview(scene), {});
     folder.write_text("scene.json", scene_files::to_json(scene, files));
     progress.report(0.99, "writing");

@@ -103,6 +103,9 @@ int run_render(Words& words) {
                     "render it first, with --reference");
     scene::Scene scene = scene_files::load(words.scene);
     const scene::View view = make_view(words.view, scene);
+    if (view.settings.walk == scene::Walk::safety_exact ||
+        view.settings.walk == scene::Walk::safety_radius)
+        scene.safety_radii = scene_files::load_safety_radii(words.scene, scene);
     const Progress progress = console_progress();
     Image picture;
     std::string device;

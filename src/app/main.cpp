@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
     app::add_info(cli, run);
     app::add_stats(cli, run);
     app::add_render(cli, run);
+    app::add_bench(cli, run);
     app::add_doctor(cli, run);
     try {
         cli.parse(argc, argv);

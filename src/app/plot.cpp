@@ -40,20 +40,64 @@ void run_gnuplot(const std::string& script) {
         throw Error("gnuplot could not draw the plot", "check its version (5.4 is tested)");
 }
 
+/// What gnuplot is told first: how big, what kind, into which file beside `path`.
+struct Sheet {
+    std::string kind, head;
+    fs::path partial;
+};
+
+Sheet sheet_for(const fs::path& path, int width_px, int height_px) {
+    Sheet sheet;
+    sheet.kind = path.extension().string();
+    std::string terminal;
+    if (sheet.kind == ".png")
+        terminal = text("pngcairo size ", width_px, ",", height_px, " font 'DejaVu Sans,12'");
+    else if (sheet.kind == ".svg")
+        terminal = text("svg size ", width_px, ",", height_px,
+                        " font 'DejaVu Sans,14' background 'white'");
+    else if (sheet.kind == ".pdf")
+        terminal = text("pdfcairo size ", width_px / 50.0, "cm,", height_px / 50.0,
+                        "cm font 'DejaVu Sans,11'");
+    else
+        throw Error(path.string() + ": is no kind of plot", "name it .png, .svg or .pdf");
+    sheet.partial = path.string() + text(".partial-", ::getpid());
+    sheet.head = text("set encoding utf8\nset terminal ", terminal, "\nset output ",
+                      quoted(sheet.partial.string()), "\n");
+    return sheet;
+}
+
+/// Runs the script and puts the plot in its place, whole or not at all.
+void draw(const Sheet& sheet, const std::string& script, const fs::path& path) {
+    std::error_code failed;
+    try {
+        if (!std::ofstream(sheet.partial))
+            throw Error(path.string() + ": cannot be written",
+                        "check the folder and its permissions");
+        run_gnuplot(sheet.head + script);
+        // gnuplot does not say when the disk is full; a whole picture has its end.
+        std::ifstream made(sheet.partial, std::ios::binary);
+        const std::string content{std::istreambuf_iterator<char>(made), {}};
+        const std::string tail =
+            content.substr(content.size() - std::min<std::size_t>(content.size(), 64));
+        if (tail.find(sheet.kind == ".png"   ? "IEND"
+                      : sheet.kind == ".svg" ? "</svg>"
+                                       : "%%EOF") == std::string::npos)
+            throw Error(path.string() + ": the plot is incomplete", "check the free space");
+        fs::rename(sheet.partial, path, failed);
+        if (failed)
+            throw Error(path.string() + ": cannot be written (" + failed.message() + ")",
+                        "check the folder and its permissions");
+    } catch (...) {
+        fs::remove(sheet.partial, failed);
+        throw;
+    }
+}
+
+
 } // namespace
 
 void draw_stages(const StagePlot& plot, const fs::path& path) {
-    const std::string kind = path.extension().string();
-    std::string terminal;
-    if (kind == ".png")
-        terminal = "pngcairo size 1100,750 font 'DejaVu Sans,12'";
-    else if (kind == ".svg")
-        terminal = "svg size 1100,750 font 'DejaVu Sans,14' background 'white'";
-    else if (kind == ".pdf")
-        terminal = "pdfcairo size 22cm,15cm font 'DejaVu Sans,11'";
-    else
-        throw Error(path.string() + ": is no kind of plot", "name it .png, .svg or .pdf");
-    const fs::path partial = path.string() + text(".partial-", ::getpid());
+    const Sheet sheet = sheet_for(path, 1100, 750);
     double low = plot.points.front().level_m, high = low;
     bool volumes = false;
     for (const auto& p : plot.points) {
@@ -66,8 +110,7 @@ void draw_stages(const StagePlot& plot, const fs::path& path) {
         high = low + 1.0;
     high += 0.06 * (high - low); // room for the label of the topmost line
     std::string script = text(
-        "set encoding utf8\nset terminal ", terminal, "\nset output ", quoted(partial.string()),
-        "\nset title ", quoted(plot.title), " noenhanced\nset ylabel 'water level [m]'\n",
+        "set title ", quoted(plot.title), " noenhanced\nset ylabel 'water level [m]'\n",
         "set xlabel 'area [km²]' textcolor rgb '#1f5fa8'\nset yrange [", low, ":", high,
         "]\nset xrange [0:*]\nset grid\nset border 15\nset tics nomirror\n",
         "set key bottom right box opaque width 1\n");
@@ -92,29 +135,49 @@ void draw_stages(const StagePlot& plot, const fs::path& path) {
     if (volumes)
         script += ", $data using 3:1 axes x2y1 with lines lw 2.5 lc rgb '#b0482f' title 'volume'";
     script += "\nunset output\n";
-    std::error_code failed;
-    try {
-        if (!std::ofstream(partial))
-            throw Error(path.string() + ": cannot be written",
-                        "check the folder and its permissions");
-        run_gnuplot(script);
-        // gnuplot does not say when the disk is full; a whole picture has its end.
-        std::ifstream made(partial, std::ios::binary);
-        const std::string content{std::istreambuf_iterator<char>(made), {}};
-        const std::string tail =
-            content.substr(content.size() - std::min<std::size_t>(content.size(), 64));
-        if (tail.find(kind == ".png"   ? "IEND"
-                      : kind == ".svg" ? "</svg>"
-                                       : "%%EOF") == std::string::npos)
-            throw Error(path.string() + ": the plot is incomplete", "check the free space");
-        fs::rename(partial, path, failed);
-        if (failed)
-            throw Error(path.string() + ": cannot be written (" + failed.message() + ")",
-                        "check the folder and its permissions");
-    } catch (...) {
-        fs::remove(partial, failed);
-        throw;
+    draw(sheet, script, path);
+}
+
+void draw_trades(const TradePlot& plot, const fs::path& path) {
+    const int count = int(plot.panels.size()), across = count > 1 ? 2 : 1,
+              down = (count + across - 1) / across;
+    const Sheet sheet = sheet_for(path, 720 * across, 80 + 470 * down);
+    std::string script =
+        text("set multiplot layout ", down, ",", across, " title ",
+             quoted(plot.title + " - " + plot.device), " noenhanced font ',14'\n",
+             "set logscale xy\nset grid\nset border 3\nset tics nomirror\n",
+             "set xlabel 'time of one picture [ms]'\n",
+             "set ylabel 'rays missed or wrong, of those that hit'\n",
+             "set key outside right top reverse Left samplen 1.5 font ',10'\n",
+             "set format y '10^{%L}'\n");
+    static const char* colours[] = {"#1f5fa8", "#2a9d8f", "#7b4fa3", "#555555",
+                                    "#e07b39", "#c0392b", "#b8860b", "#c2185b"};
+    for (const TradePlot::Panel& panel : plot.panels) {
+        // What was not found among so many rays is drawn on the floor: less than one in them.
+        const double floor = 0.5 / std::max(1.0, panel.judged);
+        script += text("set title ", quoted(panel.title), " noenhanced font ',12'\nset yrange [",
+                       0.4 * floor, ":2]\nunset arrow\nset arrow 1 from graph 0, first ", floor,
+                       " to graph 1, first ", floor,
+                       " nohead dashtype 3 lc rgb '#888888'\nset label 1 'none of ",
+                       static_cast<long>(panel.judged), "' at graph 0.99, first ", floor,
+                       " right offset 0,0.5 font ',9' textcolor rgb '#666666'\n");
+        std::string data, curves;
+        for (std::size_t m = 0; m < panel.methods.size(); ++m) {
+            const TradePlot::Method& method = panel.methods[m];
+            data += text("$m", m, " << END\n");
+            for (const auto& p : method.points)
+                data += text(p.time_ms, " ", std::max(p.failures, floor), " \"", p.setting, "\"\n");
+            data += "END\n";
+            curves += text(m ? ", " : "plot ", "$m", m, " using 1:2 with linespoints lw 1.6 pt ",
+                           m % 8 + 4, " ps 1.1 lc rgb '", colours[m % 8], "' title ",
+                           quoted(method.name), ", $m", m,
+                           " using 1:2:3 with labels offset 0,0.7 font ',8' textcolor rgb '",
+                           colours[m % 8], "' notitle");
+        }
+        script += data + curves + "\n";
     }
+    script += "unset multiplot\nunset output\n";
+    draw(sheet, script, path);
 }
 
 } // namespace tarn::app

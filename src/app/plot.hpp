@@ -21,4 +21,26 @@ struct StagePlot {
 /// @throws tarn::Error  if gnuplot is not there or fails, or the file cannot be written
 void draw_stages(const StagePlot& plot, const std::filesystem::path& path);
 
+/// Time against error of some ways of doing one thing, a panel for each view.
+struct TradePlot {
+    std::string title, device;
+    struct Point {
+        double time_ms, failures; ///< share of rays; 0: none was found among `judged`
+        std::string setting;      ///< label; empty: none
+    };
+    struct Method {
+        std::string name;
+        std::vector<Point> points; ///< by setting
+    };
+    struct Panel {
+        std::string title;
+        std::vector<Method> methods;
+        double judged; ///< rays behind each point
+    };
+    std::vector<Panel> panels; ///< one to six
+};
+
+/// @throws as draw_stages()
+void draw_trades(const TradePlot& plot, const std::filesystem::path& path);
+
 } // namespace tarn::app

@@ -153,6 +153,15 @@ void add_view_options(CLI::App& c, ViewWords& w) {
     c.add_option("--backscattering-per-m", w.backscattering,
                  "R,G,B or one number: of the water [1/m]");
     c.add_option("--index", w.index, "of refraction of the water, [1, 3]");
+    std::vector<std::string> methods;
+    for (const scene::WalkMethod& method : scene::walk_methods())
+        methods.emplace_back(method.name);
+    c.add_option("--intersection", w.intersection, "how rays find the ground and the water")
+        ->check(CLI::IsMember(methods))
+        ->capture_default_str();
+    c.add_option("--intersection-setting", w.settings.walk_setting,
+                 "steps or halvings of the methods that have a number of them; 0: their default")
+        ->capture_default_str();
     c.add_option("--fresnel", w.fresnel, "formula for the reflectance of the surface")
         ->check(CLI::IsMember({"exact", "schlick"}))
         ->capture_default_str();
@@ -205,6 +214,9 @@ scene::View make_view(const ViewWords& w, scene::Scene& scene) {
     view.settings.height_px = height;
     view.settings.fresnel =
         w.fresnel == "schlick" ? scene::Fresnel::schlick : scene::Fresnel::exact;
+    for (const scene::WalkMethod& method : scene::walk_methods())
+        if (w.intersection == method.name)
+            view.settings.walk = method.walk;
     view.settings.shadows = !w.no_shadows;
     view.settings.reflection = !w.no_reflection;
     view.settings.refraction = !w.no_refraction;

@@ -14,7 +14,7 @@ struct ViewWords {
     std::string time, sun, sun_direction, sun_irradiance, sky_radiance;
     std::string absorption, backscattering;
     std::optional<double> index;
-    std::string fresnel = "exact";
+    std::string fresnel = "exact", intersection = "cone-map";
     bool no_shadows = false, no_reflection = false, no_refraction = false, no_sun_disc = false;
     scene::RenderSettings settings;
     std::string settings_file;

@@ -11,6 +11,13 @@ namespace {
 
 using Code = std::uint16_t;
 
+// Inner loops exist twice, for processors with wide integer units and for all others.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define TARN_WIDE __attribute__((target_clones("avx2", "default")))
+#else
+#define TARN_WIDE
+#endif
+
 /// Four corner heights of a cell.
 struct Corners {
     int nw, ne, sw, se;
@@ -37,6 +44,24 @@ int greatest_tangent(const Corners& d, int across, int down) {
     };
     return std::max(std::max(plane(d.nw, east_n, south_w, 0, 0), plane(d.ne, east_n, south_e, 1, 0)),
                     std::max(plane(d.sw, east_s, south_w, 0, 1), plane(d.se, east_s, south_e, 1, 1)));
+}
+
+/// greatest_tangent() of a whole row of cells D, `across` columns and `down` rows from the cells asked for:
+/// clears safe[i] where it rises above highest[i]. No branches, so that it runs some cells at once.
+TARN_WIDE void test_row(const Code* north, const Code* south_row, int across, int down,
+                        const int* highest, unsigned char* safe, int count) {
+    for (int i = 0; i < count; ++i) {
+        const int nw = north[i], ne = north[i + 1], sw = south_row[i], se = south_row[i + 1];
+        const int east_n = ne - nw, east_s = se - sw, south_w = sw - nw, south_e = se - ne;
+        const int up_n = east_n > 0 ? east_n : 0, up_s = east_s > 0 ? east_s : 0;
+        const int up_w = south_w > 0 ? south_w : 0, up_e = south_e > 0 ? south_e : 0;
+        const int a = nw + east_n * across + up_n + south_w * down + up_w;
+        const int b = ne + east_n * (across - 1) + up_n + south_e * down + up_e;
+        const int c = sw + east_s * across + up_s + south_w * (down - 1) + up_w;
+        const int d = se + east_s * (across - 1) + up_s + south_e * (down - 1) + up_e;
+        const int ab = a > b ? a : b, cd = c > d ? c : d, most = ab > cd ? ab : cd;
+        safe[i] = static_cast<unsigned char>(safe[i] & (most <= highest[i]));
+    }
 }
 
 /// Bounds over a block of cells: nothing in it is higher or steeper.
@@ -162,28 +187,55 @@ Grid<std::uint8_t> safety_radii(const Heightfield& heights, int threads) {
 
     Grid<std::uint8_t> out({across, down});
     constexpr int tile = 8;
-    const auto one_cell = [&](int c, int r) {
-        const int highest = codes.cell(c, r).highest();
-        int n = 0;
-        while (n < 4 && ring_is_safe(c, r, highest, n))
-            ++n;
-        return n == 4 ? std::max(n, certified(c, r, 1, highest)) : n;
-    };
     share_out((down + tile - 1) / tile, threads, [&](int first, int last) {
-        for (int r = first * tile; r < std::min(last * tile, down); r += tile)
-            for (int c = 0; c < across; c += tile) {
-                const int c1 = std::min(c + tile, across), r1 = std::min(r + tile, down);
-                int lowest = 65535; // of the cells' highest nodes
-                for (int rr = r; rr < r1; ++rr)
-                    for (int cc = c; cc < c1; ++cc)
-                        lowest = std::min(lowest, codes.cell(cc, rr).highest());
-                // Wide plains (lakes) at once; where the tile gets little, each cell for itself.
-                const int together = certified(c, r, tile, lowest);
-                for (int rr = r; rr < r1; ++rr)
-                    for (int cc = c; cc < c1; ++cc)
-                        out.values[std::size_t(rr) * std::size_t(across) + std::size_t(cc)] =
-                            static_cast<std::uint8_t>(together >= 16 ? together : one_cell(cc, rr));
+        const std::size_t n_across = std::size_t(across);
+        std::vector<int> highest(n_across);
+        std::vector<unsigned char> itself(n_across), around(n_across);
+        std::vector<int> together((n_across + tile - 1) / tile);
+        for (int r = first * tile; r < std::min(last * tile, down); ++r) {
+            if (r % tile == 0) { // wide plains (lakes) at once
+                const int r1 = std::min(r + tile, down);
+                for (int c = 0; c < across; c += tile) {
+                    const int c1 = std::min(c + tile, across);
+                    int lowest = 65535; // of the cells' highest nodes
+                    for (int rr = r; rr < r1; ++rr)
+                        for (int cc = c; cc < c1; ++cc)
+                            lowest = std::min(lowest, codes.cell(cc, rr).highest());
+                    together[std::size_t(c / tile)] = certified(c, r, tile, lowest);
+                }
             }
+            // Most cells of rough ground end at themselves or at the ring around: those, a row at a time.
+            for (int c = 0; c < across; ++c)
+                highest[std::size_t(c)] = codes.cell(c, r).highest();
+            const auto test = [&](int dc, int dr, std::vector<unsigned char>& safe) {
+                const int rr = r + dr, c0 = std::max(0, -dc), c1 = std::min(across, across - dc);
+                if (rr < 0 || rr >= down || c0 >= c1)
+                    return;
+                const Code* north =
+                    codes.values + std::size_t(rr) * std::size_t(codes.cols) + std::size_t(c0 + dc);
+                test_row(north, north + codes.cols, -dc, -dr, &highest[std::size_t(c0)],
+                         &safe[std::size_t(c0)], c1 - c0);
+            };
+            std::fill(itself.begin(), itself.end(), static_cast<unsigned char>(1));
+            test(0, 0, itself);
+            around = itself;
+            for (int k = 0; k < 9; ++k)
+                if (k != 4)
+                    test(k % 3 - 1, k / 3 - 1, around);
+            for (int c = 0; c < across; ++c) {
+                const std::size_t i = std::size_t(c);
+                int n = itself[i] + around[i];
+                if (const int plain = together[i / tile]; plain >= 16) {
+                    n = plain;
+                } else if (n == 2) {
+                    while (n < 4 && ring_is_safe(c, r, highest[i], n))
+                        ++n;
+                    if (n == 4)
+                        n = std::max(n, certified(c, r, 1, highest[i]));
+                }
+                out.values[std::size_t(r) * n_across + i] = static_cast<std::uint8_t>(n);
+            }
+        }
     });
     return out;
 }

@@ -28,6 +28,10 @@ Image read_exr(const std::filesystem::path& path);
 /// @throws tarn::Error  if the file is missing, damaged, not 16-bit, or larger than 65536 a side
 Grid<std::uint16_t> read_codes(const std::filesystem::path& path);
 
+/// Reads bytes of a one-channel 8-bit TIFF.
+/// @throws as read_codes()
+Grid<std::uint8_t> read_bytes(const std::filesystem::path& path);
+
 /// Reads heights of a one-channel float TIFF; NaN where there are none.
 /// @throws as read_codes()
 Grid<float> read_heights(const std::filesystem::path& path);

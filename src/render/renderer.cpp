@@ -165,6 +165,17 @@ void Renderer::prepare(const scene::View& view) {
     flags |= settings.fresnel == scene::Fresnel::schlick ? TARN_FLAG_SCHLICK : 0u;
     flags |= light.sun_disc ? TARN_FLAG_SUN_DISC : 0u;
     flags |= scene_.ortho ? TARN_FLAG_ORTHO : 0u;
+    if (view.overlay) {
+        const scene::Overlay& o = *view.overlay;
+        if (o.width_px != settings.width_px || o.height_px != settings.height_px ||
+            o.pixels.size() != std::size_t(o.width_px) * std::size_t(o.height_px))
+            throw Error(text("the overlay is ", o.width_px, " x ", o.height_px, ", the picture ",
+                             settings.width_px, " x ", settings.height_px));
+        flags |= TARN_FLAG_OVERLAY;
+        overlay_ = gpu::Texture2D(GL_RGBA32F, o.width_px, o.height_px, 1, gpu::Filter::nearest, "overlay");
+        overlay_.upload(GL_RGBA, GL_FLOAT, o.pixels.data());
+        overlay_.bind(TARN_TEXTURE_OVERLAY);
+    }
     const auto water = scene_.water_level_m(p.x, p.y);
     if (water && p.z < *water) {
         flags |= TARN_FLAG_UNDER_WATER;

@@ -21,6 +21,8 @@ void RenderSettings::validate() const {
     require_range("height", height_px, 1, 16384);
     require_range("samples", samples, 1, 1024);
     require_range("least transmittance", least_transmittance, 1e-6, 0.5);
+    if (walk_setting != 0.0)
+        require_range("intersection setting", walk_setting, 1.0, 65536.0);
     if (ground_albedo)
         require_range("ground albedo", *ground_albedo, 0.0, 1.0);
 }

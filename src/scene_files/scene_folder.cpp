@@ -54,8 +54,8 @@ std::string reason_to_keep(const fs::path& target) {
         return "exists and is not a scene folder";
     for (const auto& entry : fs::directory_iterator(target, failed)) {
         const std::string name = entry.path().filename().string();
-        static const char* ours[] = {"scene.json",  "ground.tif", "water.tif",
-                                     "heights.tif", "ortho.tif",  "preview.png"};
+        static const char* ours[] = {"scene.json", "ground.tif",        "water.tif",  "heights.tif",
+                                     "ortho.tif",  "safety_ground.tif", "preview.png"};
         if (std::find(std::begin(ours), std::end(ours), name) == std::end(ours))
             return "holds '" + name + "', which is not tarn's";
     }
@@ -141,6 +141,24 @@ Grid<float> load_heights(const fs::path& folder, const scene::Scene& scene) {
                          scene.ground.size().rows),
                     "import the scene again");
     return heights;
+}
+
+std::optional<Grid<std::uint8_t>> load_safety_radii(const fs::path& folder,
+                                                    const scene::Scene& scene) {
+    std::ifstream in(member(folder, "scene.json"), std::ios::binary);
+    const std::string source{std::istreambuf_iterator<char>(in), {}};
+    FileNames files;
+    from_json(source, files);
+    if (files.safety_ground.empty())
+        return {};
+    Grid<std::uint8_t> radii = image::read_bytes(member(folder, files.safety_ground));
+    const GridSize cells{scene.ground.size().cols - 1, scene.ground.size().rows - 1};
+    if (!(radii.size == cells))
+        throw Error(text((folder / files.safety_ground).string(), ": is ", radii.size.cols, " x ",
+                         radii.size.rows, ", the ground has ", cells.cols, " x ", cells.rows,
+                         " cells"),
+                    "import the scene again");
+    return radii;
 }
 
 StagedFolder::StagedFolder(const fs::path& target) : target_(target.lexically_normal()) {

@@ -11,7 +11,7 @@ inline constexpr int schema_version = 2;
 
 /// Names of the rasters inside the folder.
 struct FileNames {
-    std::string ground = "ground.tif", water = "water.tif", heights = "heights.tif", ortho;
+    std::string ground = "ground.tif", water = "water.tif", heights = "heights.tif", ortho, safety_ground;
 };
 
 /// @return the text of scene.json, two-space indented, ending with a newline

@@ -1,0 +1,241 @@
+#include "app/command.hpp"
+#include "app/console.hpp"
+#include "app/plot.hpp"
+#include "bench/adversary.hpp"
+#include "bench/intersection.hpp"
+#include "core/error.hpp"
+#include "core/text.hpp"
+#include "gpu/context.hpp"
+#include "scene/samples.hpp"
+#include "scene_files/scene_folder.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace tarn::app {
+
+namespace {
+
+using nlohmann::json;
+
+struct Words {
+    std::string scene, size = "800x600", json_file, chart, from;
+    std::vector<std::string> methods, views;
+    int synthetic = 1024, runs = 7, rays = 20'000;
+    bool intersection = false, failures = false;
+};
+
+/// Written beside and renamed, so that no half file is left.
+void write_file(const std::string& path, const std::string& content) {
+    const std::string partial = path + ".partial";
+    std::ofstream out(partial, std::ios::binary);
+    out << content;
+    out.close();
+    std::error_code failed;
+    if (out)
+        std::filesystem::rename(partial, path, failed);
+    if (!out || failed) {
+        std::filesystem::remove(partial, failed);
+        throw Error(path + ": cannot be written", "check the folder, its permissions and free space");
+    }
+}
+
+json measure(const Words& words) {
+    bench::IntersectionOptions options;
+    options.methods = words.methods;
+    bench::PictureSize size;
+    char extra = 0;
+    if (std::sscanf(words.size.c_str(), "%dx%d%c", &size.width_px, &size.height_px, &extra) != 2)
+        throw Error("--size '" + words.size + "' is not understood", "write WIDTHxHEIGHT, like 800x600");
+    options.sizes = {size};
+    options.runs = words.runs;
+    options.judged_rays = words.rays;
+    scene::Scene scene;
+    std::string name;
+    std::vector<bench::NamedView> views;
+    if (words.scene.empty()) {
+        scene = scene::mountain_lake(words.synthetic);
+        name = text("synthetic ", words.synthetic);
+        views = bench::mountain_views();
+    } else {
+        scene = scene_files::load(words.scene);
+        scene.safety_radii = scene_files::load_safety_radii(words.scene, scene);
+        name = std::filesystem::path(words.scene).lexically_normal().filename().string();
+        for (const scene::NamedCamera& camera : scene.cameras)
+            views.push_back({camera.name, camera.camera});
+    }
+    if (!words.views.empty()) {
+        std::vector<bench::NamedView> chosen;
+        for (const std::string& wanted : words.views) {
+            const auto at = std::find_if(views.begin(), views.end(), [&](const auto& v) { return v.name == wanted; });
+            if (at == views.end()) {
+                std::string names;
+                for (const auto& v : views)
+                    names += (names.empty() ? "" : ", ") + v.name;
+                throw Error("--view: no view is called '" + wanted + "'", "use " + names);
+            }
+            chosen.push_back(*at);
+        }
+        views = chosen;
+    }
+    const gpu::Context context;
+    const auto results = bench::compare_methods(scene, name, views, options, console_progress());
+    end_progress();
+    std::ostringstream out;
+    bench::write_json(out, context.renderer(), TARN_COMMIT, results);
+    return json::parse(out.str());
+}
+
+json read_results(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    if (!in)
+        throw Error("--from " + path + ": no such file", "name a file that --json wrote");
+    try {
+        json stored = json::parse(in);
+        for (const char* key : {"device", "commit", "results"})
+            if (!stored.contains(key))
+                throw Error("--from " + path + ": has no '" + key + "'", "name a file that --json wrote");
+        return stored;
+    } catch (const json::exception& error) {
+        throw Error("--from " + path + ": is not understood (" + error.what() + ")", "name a file that --json wrote");
+    }
+}
+
+void print_table(const json& all) {
+    std::cout << "device " << all["device"].get<std::string>() << ", commit " << all["commit"].get<std::string>() << "\n";
+    std::string last;
+    for (const json& r : all["results"]) {
+        const std::string head = text(r["scene"].get<std::string>(), ", ", r["view"].get<std::string>(), ", ", r["width"], "x", r["height"]);
+        if (head != last)
+            std::cout << head << "\n  method            setting    time [ms]   M rays/s     missed      wrong   mean error\n";
+        last = head;
+        char line[200];
+        std::snprintf(line, sizeof line, "  %-16s %8g  %11.3f  %9.2f  %9.2e  %9.2e  %11.2e\n",
+                      r["method"].get<std::string>().c_str(), r["settings"]["steps"].get<double>(),
+                      r["time_ms"].get<double>(), 1e-6 * r["rays_per_s"].get<double>(),
+                      r["missed_rate"].get<double>(), r["wrong_rate"].get<double>(), r["mean_error"].get<double>());
+        std::cout << line;
+    }
+}
+
+/// One panel for each field and view; where there are too many, those of the field in the middle.
+TradePlot trades_of(const json& all) {
+    TradePlot plot;
+    plot.title = "First hits: time against error";
+    plot.device = all["device"].get<std::string>();
+    for (const json& r : all["results"]) {
+        const std::string title = text(r["scene"].get<std::string>(), ", ", r["view"].get<std::string>(), ", ", r["width"], "×", r["height"]);
+        auto panel = std::find_if(plot.panels.begin(), plot.panels.end(), [&](const auto& p) { return p.title == title; });
+        if (panel == plot.panels.end()) {
+            if (plot.panels.size() == 6)
+                continue;
+            plot.panels.push_back({title, {}, r["hits"].get<double>()});
+            panel = plot.panels.end() - 1;
+        }
+        const std::string name = r["method"].get<std::string>();
+        auto method = std::find_if(panel->methods.begin(), panel->methods.end(), [&](const auto& m) { return m.name == name; });
+        if (method == panel->methods.end()) {
+            panel->methods.push_back({name, {}});
+            method = panel->methods.end() - 1;
+        }
+        const double steps = r["settings"]["steps"].get<double>();
+        method->points.push_back({r["time_ms"].get<double>(), r["missed_rate"].get<double>() + r["wrong_rate"].get<double>(),
+                                  steps > 0 ? text(steps) : std::string()});
+    }
+    return plot;
+}
+
+/// Share of failures of each method for each class of ray, over fields made to break it.
+void print_failures(const Words& words) {
+    const gpu::Context context;
+    const auto fields = bench::adversarial_fields();
+    const Progress progress = console_progress();
+    std::cout << "| method | field |";
+    for (const char* name : bench::ray_class_names)
+        std::cout << " " << name << " |";
+    std::cout << "\n| --- | --- |" << [] {
+        std::string out;
+        for (std::size_t k = 0; k < bench::ray_class_names.size(); ++k)
+            out += " --- |";
+        return out;
+    }() << "\n";
+    std::size_t done = 0;
+    for (const scene::WalkMethod& method : scene::walk_methods()) {
+        if (!words.methods.empty() && std::find(words.methods.begin(), words.methods.end(), method.name) == words.methods.end())
+            continue;
+        for (const auto& field : fields) {
+            progress.report(double(done++) / double(fields.size() * scene::walk_methods().size()), method.name);
+            render::Renderer renderer(field.scene);
+            std::string row = text("| ", method.name, " | ", field.name, " |");
+            for (std::size_t k = 0; k < bench::ray_class_names.size(); ++k) {
+                auto rays = bench::make_rays(field.scene, static_cast<bench::RayClass>(k), words.rays, unsigned(k + 1));
+                const auto rounded = bench::round_rays(field.scene, rays);
+                const auto got = renderer.trace_rays(rounded, method.walk, 0.0, false);
+                const bench::Verdict v = bench::judge_hits(field.scene, rays, got, false);
+                const double hits = std::max(1, v.hits);
+                if (v.failures() == 0)
+                    row += " 0 |";
+                else
+                    row += text(" ", fixed(100.0 * v.missed / hits, 2), " + ", fixed(100.0 * (v.off + v.invented) / hits, 2), " |");
+            }
+            std::cout << row << "\n";
+        }
+    }
+    end_progress();
+}
+
+int run_bench(const Words& words) {
+    if (!words.intersection)
+        throw Error("nothing to measure was named", "add --intersection");
+    if (words.failures) {
+        print_failures(words);
+        return 0;
+    }
+    const json all = words.from.empty() ? measure(words) : read_results(words.from);
+    try {
+        print_table(all);
+        if (!words.json_file.empty())
+            write_file(words.json_file, all.dump(1) + "\n");
+        if (!words.chart.empty())
+            draw_trades(trades_of(all), words.chart);
+    } catch (const json::exception& error) {
+        throw Error("--from " + words.from + ": is not understood (" + error.what() + ")", "name a file that --json wrote");
+    }
+    return 0;
+}
+
+} // namespace
+
+void add_bench(CLI::App& app, Run& run) {
+    auto words = std::make_shared<Words>();
+    CLI::App* c = app.add_subcommand("bench", "speed against accuracy: table, JSON, chart");
+    c->add_option("SCENE", words->scene, "scene folder; without it a synthetic mountain lake");
+    c->add_flag("--intersection", words->intersection, "ways of finding a ray's first hit");
+    c->add_option("--synthetic", words->synthetic, "nodes a side of the synthetic lake")
+        ->check(CLI::Range(17, 16384))
+        ->capture_default_str();
+    c->add_option("--methods", words->methods, "only these, comma between")->delimiter(',');
+    c->add_option("--views", words->views, "only these: the scene's cameras, or high, grazing, shore, below")->delimiter(',');
+    c->add_option("--size", words->size, "of the pictures [px]")->capture_default_str();
+    c->add_option("--runs", words->runs, "timed pictures; the median counts")->check(CLI::Range(1, 1000))->capture_default_str();
+    c->add_option("--rays", words->rays, "judged against the double-precision walk, a picture or class")
+        ->check(CLI::Range(100, 10'000'000))
+        ->capture_default_str();
+    c->add_flag("--failures", words->failures, "instead: a table of failures over fields and rays made to break methods");
+    c->add_option("--json", words->json_file, "write the results");
+    c->add_option("--chart", words->chart, "draw time against error (.svg, .png, .pdf)");
+    c->add_option("--from", words->from, "results of an earlier --json instead of measuring");
+    c->footer("Examples:\n"
+              "  tarn bench --intersection --chart walks.svg --json walks.json\n"
+              "  tarn bench rotoma --intersection --methods cone-map,uniform-steps --views shore\n"
+              "  tarn bench --intersection --failures --rays 5000\n"
+              "  tarn bench --intersection --from gpu.json --chart gpu.svg");
+    c->callback([words, &run] { run = [words] { return run_bench(*words); }; });
+}
+
+} // namespace tarn::app
