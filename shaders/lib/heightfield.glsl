@@ -26,13 +26,14 @@ struct Field {
     int root;          // maximum mipmap: level whose one block covers the field
     int shift;         // cone map: blocks of 2^shift cells a side
     vec2 cone;         // cone map texel -> units, of the ground's (x) and the surface's (y)
+    vec2 slope;        // its steepest slopes, units a cell
     float setting;     // of methods that have one: steps, or rays' least stride
 };
 
 // field_of — the field that a view block describes.
 Field field_of(ViewBlock view) {
     return Field(view.grid.xy - 1.0, view.inverse_size.xy, view.units.x, view.units.yz, view.units.w, view.bounds.w,
-                 view.slab.x, view.slab.y, view.base.z, view.walk.x, view.walk.y, view.bounds.xy, view.bounds.z);
+                 view.slab.x, view.slab.y, view.base.z, view.walk.x, view.walk.y, view.bounds.xy, view.slab.zw, view.bounds.z);
 }
 
 // Origin and direction per metre of path: columns, rows, height [m]. Columns and rows count from the

@@ -68,7 +68,8 @@ struct ViewBlock {
     vec4 units;           // x: units a metre, yz: of water: offset and factor on the texel, w: the top
     vec4 bounds;          // cone map, units a texel: x: of the ground, y: of the surface;
                           // z: setting of the walk, w: the bottom
-    vec4 slab;            // x: lowest ground, y: highest water, zw: -
+    vec4 slab;            // x: lowest ground, y: highest water,
+                          // zw: steepest slope of the ground's and the surface's cone map, units a cell
     ivec4 walk;           // x: level of the root block, y: cone map's blocks are 2^y cells a side, zw: -
 };
 

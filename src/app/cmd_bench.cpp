@@ -41,7 +41,8 @@ void write_file(const std::string& path, const std::string& content) {
         std::filesystem::rename(partial, path, failed);
     if (!out || failed) {
         std::filesystem::remove(partial, failed);
-        throw Error(path + ": cannot be written", "check the folder, its permissions and free space");
+        throw Error(path + ": cannot be written",
+                    "check the folder, its permissions and free space");
     }
 }
 
@@ -51,7 +52,8 @@ json measure(const Words& words) {
     bench::PictureSize size;
     char extra = 0;
     if (std::sscanf(words.size.c_str(), "%dx%d%c", &size.width_px, &size.height_px, &extra) != 2)
-        throw Error("--size '" + words.size + "' is not understood", "write WIDTHxHEIGHT, like 800x600");
+        throw Error("--size '" + words.size + "' is not understood",
+                    "write WIDTHxHEIGHT, like 800x600");
     options.sizes = {size};
     options.runs = words.runs;
     options.judged_rays = words.rays;
@@ -72,7 +74,8 @@ json measure(const Words& words) {
     if (!words.views.empty()) {
         std::vector<bench::NamedView> chosen;
         for (const std::string& wanted : words.views) {
-            const auto at = std::find_if(views.begin(), views.end(), [&](const auto& v) { return v.name == wanted; });
+            const auto at = std::find_if(views.begin(), views.end(),
+                                         [&](const auto& v) { return v.name == wanted; });
             if (at == views.end()) {
                 std::string names;
                 for (const auto& v : views)
@@ -99,26 +102,34 @@ json read_results(const std::string& path) {
         json stored = json::parse(in);
         for (const char* key : {"device", "commit", "results"})
             if (!stored.contains(key))
-                throw Error("--from " + path + ": has no '" + key + "'", "name a file that --json wrote");
+                throw Error("--from " + path + ": has no '" + key + "'",
+                            "name a file that --json wrote");
         return stored;
     } catch (const json::exception& error) {
-        throw Error("--from " + path + ": is not understood (" + error.what() + ")", "name a file that --json wrote");
+        throw Error("--from " + path + ": is not understood (" + error.what() + ")",
+                    "name a file that --json wrote");
     }
 }
 
 void print_table(const json& all) {
-    std::cout << "device " << all["device"].get<std::string>() << ", commit " << all["commit"].get<std::string>() << "\n";
+    std::cout << "device " << all["device"].get<std::string>() << ", commit "
+              << all["commit"].get<std::string>() << "\n";
     std::string last;
     for (const json& r : all["results"]) {
-        const std::string head = text(r["scene"].get<std::string>(), ", ", r["view"].get<std::string>(), ", ", r["width"], "x", r["height"]);
+        const std::string head =
+            text(r["scene"].get<std::string>(), ", ", r["view"].get<std::string>(), ", ",
+                 r["width"], "x", r["height"]);
         if (head != last)
-            std::cout << head << "\n  method            setting    time [ms]   M rays/s     missed      wrong   mean error\n";
+            std::cout << head
+                      << "\n  method            setting    time [ms]   M rays/s     missed      "
+                         "wrong   mean error\n";
         last = head;
         char line[200];
         std::snprintf(line, sizeof line, "  %-16s %8g  %11.3f  %9.2f  %9.2e  %9.2e  %11.2e\n",
                       r["method"].get<std::string>().c_str(), r["settings"]["steps"].get<double>(),
                       r["time_ms"].get<double>(), 1e-6 * r["rays_per_s"].get<double>(),
-                      r["missed_rate"].get<double>(), r["wrong_rate"].get<double>(), r["mean_error"].get<double>());
+                      r["missed_rate"].get<double>(), r["wrong_rate"].get<double>(),
+                      r["mean_error"].get<double>());
         std::cout << line;
     }
 }
@@ -129,8 +140,11 @@ TradePlot trades_of(const json& all) {
     plot.title = "First hits: time against error";
     plot.device = all["device"].get<std::string>();
     for (const json& r : all["results"]) {
-        const std::string title = text(r["scene"].get<std::string>(), ", ", r["view"].get<std::string>(), ", ", r["width"], "×", r["height"]);
-        auto panel = std::find_if(plot.panels.begin(), plot.panels.end(), [&](const auto& p) { return p.title == title; });
+        const std::string title =
+            text(r["scene"].get<std::string>(), ", ", r["view"].get<std::string>(), ", ",
+                 r["width"], "×", r["height"]);
+        auto panel = std::find_if(plot.panels.begin(), plot.panels.end(),
+                                  [&](const auto& p) { return p.title == title; });
         if (panel == plot.panels.end()) {
             if (plot.panels.size() == 6)
                 continue;
@@ -138,13 +152,15 @@ TradePlot trades_of(const json& all) {
             panel = plot.panels.end() - 1;
         }
         const std::string name = r["method"].get<std::string>();
-        auto method = std::find_if(panel->methods.begin(), panel->methods.end(), [&](const auto& m) { return m.name == name; });
+        auto method = std::find_if(panel->methods.begin(), panel->methods.end(),
+                                   [&](const auto& m) { return m.name == name; });
         if (method == panel->methods.end()) {
             panel->methods.push_back({name, {}});
             method = panel->methods.end() - 1;
         }
         const double steps = r["settings"]["steps"].get<double>();
-        method->points.push_back({r["time_ms"].get<double>(), r["missed_rate"].get<double>() + r["wrong_rate"].get<double>(),
+        method->points.push_back({r["time_ms"].get<double>(),
+                                  r["missed_rate"].get<double>() + r["wrong_rate"].get<double>(),
                                   steps > 0 ? text(steps) : std::string()});
     }
     return plot;
@@ -166,14 +182,17 @@ void print_failures(const Words& words) {
     }() << "\n";
     std::size_t done = 0;
     for (const scene::WalkMethod& method : scene::walk_methods()) {
-        if (!words.methods.empty() && std::find(words.methods.begin(), words.methods.end(), method.name) == words.methods.end())
+        if (!words.methods.empty() && std::find(words.methods.begin(), words.methods.end(),
+                                                method.name) == words.methods.end())
             continue;
         for (const auto& field : fields) {
-            progress.report(double(done++) / double(fields.size() * scene::walk_methods().size()), method.name);
+            progress.report(double(done++) / double(fields.size() * scene::walk_methods().size()),
+                            method.name);
             render::Renderer renderer(field.scene);
             std::string row = text("| ", method.name, " | ", field.name, " |");
             for (std::size_t k = 0; k < bench::ray_class_names.size(); ++k) {
-                auto rays = bench::make_rays(field.scene, static_cast<bench::RayClass>(k), words.rays, unsigned(k + 1));
+                auto rays = bench::make_rays(field.scene, static_cast<bench::RayClass>(k),
+                                             words.rays, unsigned(k + 1));
                 const auto rounded = bench::round_rays(field.scene, rays);
                 const auto got = renderer.trace_rays(rounded, method.walk, 0.0, false);
                 const bench::Verdict v = bench::judge_hits(field.scene, rays, got, false);
@@ -181,7 +200,8 @@ void print_failures(const Words& words) {
                 if (v.failures() == 0)
                     row += " 0 |";
                 else
-                    row += text(" ", fixed(100.0 * v.missed / hits, 2), " + ", fixed(100.0 * (v.off + v.invented) / hits, 2), " |");
+                    row += text(" ", fixed(100.0 * v.missed / hits, 2), " + ",
+                                fixed(100.0 * (v.off + v.invented) / hits, 2), " |");
             }
             std::cout << row << "\n";
         }
@@ -204,7 +224,8 @@ int run_bench(const Words& words) {
         if (!words.chart.empty())
             draw_trades(trades_of(all), words.chart);
     } catch (const json::exception& error) {
-        throw Error("--from " + words.from + ": is not understood (" + error.what() + ")", "name a file that --json wrote");
+        throw Error("--from " + words.from + ": is not understood (" + error.what() + ")",
+                    "name a file that --json wrote");
     }
     return 0;
 }
@@ -220,13 +241,19 @@ void add_bench(CLI::App& app, Run& run) {
         ->check(CLI::Range(17, 16384))
         ->capture_default_str();
     c->add_option("--methods", words->methods, "only these, comma between")->delimiter(',');
-    c->add_option("--views", words->views, "only these: the scene's cameras, or high, grazing, shore, below")->delimiter(',');
+    c->add_option("--views", words->views,
+                  "only these: the scene's cameras, or high, grazing, shore, below")
+        ->delimiter(',');
     c->add_option("--size", words->size, "of the pictures [px]")->capture_default_str();
-    c->add_option("--runs", words->runs, "timed pictures; the median counts")->check(CLI::Range(1, 1000))->capture_default_str();
-    c->add_option("--rays", words->rays, "judged against the double-precision walk, a picture or class")
+    c->add_option("--runs", words->runs, "timed pictures; the median counts")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    c->add_option("--rays", words->rays,
+                  "judged against the double-precision walk, a picture or class")
         ->check(CLI::Range(100, 10'000'000))
         ->capture_default_str();
-    c->add_flag("--failures", words->failures, "instead: a table of failures over fields and rays made to break methods");
+    c->add_flag("--failures", words->failures,
+                "instead: a table of failures over fields and rays made to break methods");
     c->add_option("--json", words->json_file, "write the results");
     c->add_option("--chart", words->chart, "draw time against error (.svg, .png, .pdf)");
     c->add_option("--from", words->from, "results of an earlier --json instead of measuring");

@@ -81,7 +81,7 @@ void draw(const Sheet& sheet, const std::string& script, const fs::path& path) {
             content.substr(content.size() - std::min<std::size_t>(content.size(), 64));
         if (tail.find(sheet.kind == ".png"   ? "IEND"
                       : sheet.kind == ".svg" ? "</svg>"
-                                       : "%%EOF") == std::string::npos)
+                                             : "%%EOF") == std::string::npos)
             throw Error(path.string() + ": the plot is incomplete", "check the free space");
         fs::rename(sheet.partial, path, failed);
         if (failed)
@@ -92,7 +92,6 @@ void draw(const Sheet& sheet, const std::string& script, const fs::path& path) {
         throw;
     }
 }
-
 
 } // namespace
 
@@ -109,11 +108,11 @@ void draw_stages(const StagePlot& plot, const fs::path& path) {
     if (low == high)
         high = low + 1.0;
     high += 0.06 * (high - low); // room for the label of the topmost line
-    std::string script = text(
-        "set title ", quoted(plot.title), " noenhanced\nset ylabel 'water level [m]'\n",
-        "set xlabel 'area [km²]' textcolor rgb '#1f5fa8'\nset yrange [", low, ":", high,
-        "]\nset xrange [0:*]\nset grid\nset border 15\nset tics nomirror\n",
-        "set key bottom right box opaque width 1\n");
+    std::string script =
+        text("set title ", quoted(plot.title), " noenhanced\nset ylabel 'water level [m]'\n",
+             "set xlabel 'area [km²]' textcolor rgb '#1f5fa8'\nset yrange [", low, ":", high,
+             "]\nset xrange [0:*]\nset grid\nset border 15\nset tics nomirror\n",
+             "set key bottom right box opaque width 1\n");
     if (volumes)
         script += "set x2label 'volume [10⁶ m³]' textcolor rgb '#b0482f'\nset x2tics\n"
                   "set x2range [0:*]\n";
@@ -142,14 +141,13 @@ void draw_trades(const TradePlot& plot, const fs::path& path) {
     const int count = int(plot.panels.size()), across = count > 1 ? 2 : 1,
               down = (count + across - 1) / across;
     const Sheet sheet = sheet_for(path, 720 * across, 80 + 470 * down);
-    std::string script =
-        text("set multiplot layout ", down, ",", across, " title ",
-             quoted(plot.title + " - " + plot.device), " noenhanced font ',14'\n",
-             "set logscale xy\nset grid\nset border 3\nset tics nomirror\n",
-             "set xlabel 'time of one picture [ms]'\n",
-             "set ylabel 'rays missed or wrong, of those that hit'\n",
-             "set key outside right top reverse Left samplen 1.5 font ',10'\n",
-             "set format y '10^{%L}'\n");
+    std::string script = text("set multiplot layout ", down, ",", across, " title ",
+                              quoted(plot.title + " - " + plot.device), " noenhanced font ',14'\n",
+                              "set logscale xy\nset grid\nset border 3\nset tics nomirror\n",
+                              "set xlabel 'time of one picture [ms]'\n",
+                              "set ylabel 'rays missed or wrong, of those that hit'\n",
+                              "set key outside right top reverse Left samplen 1.5 font ',10'\n",
+                              "set format y '10^{%L}'\n");
     static const char* colours[] = {"#1f5fa8", "#2a9d8f", "#7b4fa3", "#555555",
                                     "#e07b39", "#c0392b", "#b8860b", "#c2185b"};
     for (const TradePlot::Panel& panel : plot.panels) {
@@ -168,11 +166,11 @@ void draw_trades(const TradePlot& plot, const fs::path& path) {
             for (const auto& p : method.points)
                 data += text(p.time_ms, " ", std::max(p.failures, floor), " \"", p.setting, "\"\n");
             data += "END\n";
-            curves += text(m ? ", " : "plot ", "$m", m, " using 1:2 with linespoints lw 1.6 pt ",
-                           m % 8 + 4, " ps 1.1 lc rgb '", colours[m % 8], "' title ",
-                           quoted(method.name), ", $m", m,
-                           " using 1:2:3 with labels offset 0,0.7 font ',8' textcolor rgb '",
-                           colours[m % 8], "' notitle");
+            curves +=
+                text(m ? ", " : "plot ", "$m", m, " using 1:2 with linespoints lw 1.6 pt ",
+                     m % 8 + 4, " ps 1.1 lc rgb '", colours[m % 8], "' title ", quoted(method.name),
+                     ", $m", m, " using 1:2:3 with labels offset 0,0.7 font ',8' textcolor rgb '",
+                     colours[m % 8], "' notitle");
         }
         script += data + curves + "\n";
     }

@@ -58,14 +58,15 @@ std::vector<AdversarialField> adversarial_fields() {
     out.push_back(
         {"rough", field_scene({64, 64}, 1.0, [&](int, int) { return 10.0 * unit(random); })});
     // A third of the ground lies exactly at the water's level.
-    out.push_back({"plateaus at water level", field_scene({96, 80}, 3.0,
-                                                          [&](int c, int r) {
-                                                              const int k = (c / 8 + r / 10) % 3;
-                                                              return k == 0   ? 12.0
-                                                                     : k == 1 ? 20.0 + unit(random)
-                                                                              : 4.0 * unit(random);
-                                                          },
-                                                          12.0)});
+    out.push_back({"plateaus at water level", field_scene(
+                                                  {96, 80}, 3.0,
+                                                  [&](int c, int r) {
+                                                      const int k = (c / 8 + r / 10) % 3;
+                                                      return k == 0   ? 12.0
+                                                             : k == 1 ? 20.0 + unit(random)
+                                                                      : 4.0 * unit(random);
+                                                  },
+                                                  12.0)});
     out.push_back({"bowl", scene::bowl(129)});
     return out;
 }
@@ -114,7 +115,8 @@ std::vector<TestRay> make_rays(const scene::Scene& scene, RayClass kind, int cou
             break;
         case RayClass::diagonal: {
             const glm::dvec2 n = node_near(b);
-            const double side = unit(random) < 0.5 ? -1 : 1, steps = 5 + std::floor(40 * unit(random));
+            const double side = unit(random) < 0.5 ? -1 : 1,
+                         steps = 5 + std::floor(40 * unit(random));
             to = {g.x_m(n.x), g.y_m(n.y), to.z};
             from = {g.x_m(n.x - steps), g.y_m(n.y - side * steps), from.z};
             break;
@@ -173,8 +175,8 @@ Verdict judge_hits(const scene::Scene& scene, const std::vector<TestRay>& rays,
             const bool found = got.kind > 0.5f;
             ++v.rays;
             const double length = glm::length(ray.direction);
-            const auto hit = reference::trace_field(scene.ground, water, ray.origin, ray.direction,
-                                                    1e9, bottom);
+            const auto hit =
+                reference::trace_field(scene.ground, water, ray.origin, ray.direction, 1e9, bottom);
             v.hits += hit.has_value();
             const auto shifted = [&](double dz, double dx = 0.0, double dy = 0.0) {
                 return reference::trace_field(scene.ground, water,
@@ -189,7 +191,8 @@ Verdict judge_hits(const scene::Scene& scene, const std::vector<TestRay>& rays,
             }
             if (!hit) {
                 v.invented += found && !shifted(-quantum) && !shifted(0, aside) &&
-                              !shifted(0, -aside) && !shifted(0, 0, aside) && !shifted(0, 0, -aside);
+                              !shifted(0, -aside) && !shifted(0, 0, aside) &&
+                              !shifted(0, 0, -aside);
                 continue;
             }
             const double allowed = std::max(quantum, 1e-5 * hit->t * length);
@@ -215,9 +218,9 @@ Verdict judge_hits(const scene::Scene& scene, const std::vector<TestRay>& rays,
                 const glm::dvec3 p = hit->point;
                 bool named = std::abs(scene.ground.elevation_m(p.x, p.y) -
                                       scene.water.elevation_m(p.x, p.y)) < 2 * quantum;
-                for (const auto& beside : {shifted(quantum), shifted(-quantum), shifted(0, aside),
-                                           shifted(0, -aside), shifted(0, 0, aside),
-                                           shifted(0, 0, -aside)})
+                for (const auto& beside :
+                     {shifted(quantum), shifted(-quantum), shifted(0, aside), shifted(0, -aside),
+                      shifted(0, 0, aside), shifted(0, 0, -aside)})
                     named |= beside && beside->water != hit->water;
                 v.other_surface += !named;
             }

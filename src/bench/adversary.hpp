@@ -1,5 +1,6 @@
 #pragma once
-/// @file adversary.hpp  Fields and rays made to break ways of finding a first hit, and the verdict on them.
+/// @file adversary.hpp  Fields and rays made to break ways of finding a first hit, and the verdict
+/// on them.
 #include "render/renderer.hpp"
 
 #include <array>
@@ -16,7 +17,7 @@ struct TestRay {
 
 /// Where rays come from and go to; each is a family that some method fails on.
 enum class RayClass {
-    any,          ///< from above or beside to any place
+    any, ///< from above or beside to any place
     straight_down,
     grazing,      ///< 1e-2 to 1e-5 rad from the horizontal
     along_row,    ///< parallel to grid rows, between them
@@ -28,7 +29,7 @@ enum class RayClass {
     from_below,   ///< starting in the water or in the ground, upwards
 };
 inline constexpr std::array<const char*, 10> ray_class_names = {
-    "any",      "straight down", "grazing",      "along a row",  "along a grid line",
+    "any",      "straight down", "grazing",          "along a row",  "along a grid line",
     "diagonal", "through nodes", "from the surface", "from outside", "from below"};
 
 std::vector<TestRay> make_rays(const scene::Scene& scene, RayClass kind, int count, unsigned seed);
@@ -38,7 +39,8 @@ struct AdversarialField {
     scene::Scene scene;
 };
 
-/// Spikes, cliffs, needles, a thin ridge, rough ground, plateaus at the water's level, a bowl, mountains.
+/// Spikes, cliffs, needles, a thin ridge, rough ground, plateaus at the water's level, a bowl,
+/// mountains.
 std::vector<AdversarialField> adversarial_fields();
 
 /// A scene of given heights; all of it below `level_m` carries water (with the nodes around).
@@ -63,10 +65,10 @@ struct Verdict {
 
 /// Judges answers against the double-precision walk over every cell.
 ///
-/// Allowed: max(1 quantum, 1e-5 of the distance), seen along the ray. Where a ray skims a surface, the
-/// place of the hit is as uncertain as its height over the sine between the two: an answer between those
-/// for the ray a quantum lower and a quantum higher is right. So is a miss or a hit, or one surface for
-/// the other, by less than a quantum or by a ten-thousandth of a cell sideways.
+/// Allowed: max(1 quantum, 1e-5 of the distance), seen along the ray. Where a ray skims a surface,
+/// the place of the hit is as uncertain as its height over the sine between the two: an answer
+/// between those for the ray a quantum lower and a quantum higher is right. So is a miss or a hit,
+/// or one surface for the other, by less than a quantum or by a ten-thousandth of a cell sideways.
 Verdict judge_hits(const scene::Scene& scene, const std::vector<TestRay>& rays,
                    const std::vector<render::FieldHit>& hits, bool with_water);
 

@@ -28,9 +28,8 @@ struct Candidate {
 std::vector<Candidate> candidates(const IntersectionOptions& options) {
     std::vector<Candidate> out;
     for (const scene::WalkMethod& method : scene::walk_methods()) {
-        if (!options.methods.empty() &&
-            std::find(options.methods.begin(), options.methods.end(), method.name) ==
-                options.methods.end())
+        if (!options.methods.empty() && std::find(options.methods.begin(), options.methods.end(),
+                                                  method.name) == options.methods.end())
             continue;
         if (method.default_setting == 0.0)
             out.push_back({&method, 0.0});
@@ -57,7 +56,8 @@ Truth truth_of(const scene::Scene& scene, const scene::View& view, int wanted) {
     truth.pixel_rad = 2.0 * half / h;
     // A lattice that shares no factor with the picture's tiles.
     const std::size_t pixels = std::size_t(w) * std::size_t(h);
-    const std::size_t stride = std::max<std::size_t>(1, pixels / std::size_t(std::max(1, wanted))) | 1;
+    const std::size_t stride =
+        std::max<std::size_t>(1, pixels / std::size_t(std::max(1, wanted))) | 1;
     for (std::size_t i = stride / 2; i < pixels; i += stride)
         truth.pixels.push_back(i);
     truth.t.resize(truth.pixels.size());
@@ -191,8 +191,8 @@ void write_json(std::ostream& out, const std::string& device, const std::string&
     for (const IntersectionResult& r : results) {
         out << comma << "{\"scene\": \"" << r.scene << "\", \"view\": \"" << r.view
             << "\", \"method\": \"" << r.method << "\", \"source\": \"" << r.source
-            << "\", \"settings\": {\"steps\": " << r.setting << "}, \"exact\": "
-            << (r.exact ? "true" : "false") << ", \"nodes\": " << r.nodes
+            << "\", \"settings\": {\"steps\": " << r.setting
+            << "}, \"exact\": " << (r.exact ? "true" : "false") << ", \"nodes\": " << r.nodes
             << ", \"width\": " << r.width_px << ", \"height\": " << r.height_px
             << ", \"time_ms\": " << r.time.median_ms << ", \"time_q1_ms\": " << r.time.low_ms
             << ", \"time_q3_ms\": " << r.time.high_ms << ", \"clock\": \"" << r.time.clock

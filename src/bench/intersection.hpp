@@ -26,7 +26,7 @@ struct PictureSize {
 
 struct IntersectionOptions {
     std::vector<std::string> methods; ///< empty: all of scene::walk_methods()
-    bool all_settings = true;         ///< of methods with a number of steps: a series, else the default
+    bool all_settings = true; ///< of methods with a number of steps: a series, else the default
     std::vector<PictureSize> sizes;   ///< at least one
     int runs = 21;                    ///< timed, after warming up
     int judged_rays = 40'000;         ///< of each picture against the double-precision grid walk
@@ -39,11 +39,11 @@ struct IntersectionResult {
     std::string scene, view, method, source;
     double setting = 0.0; ///< 0: has none
     bool exact = false;
-    int nodes = 0;        ///< columns of the field
+    int nodes = 0; ///< columns of the field
     int width_px = 0, height_px = 0;
     Times time;
-    double set_up_ms = 0.0;  ///< making the bounds, shaders included; 0 if already there
-    double field_mb = 0.0;   ///< heights and bounds
+    double set_up_ms = 0.0;   ///< making the bounds, shaders included; 0 if already there
+    double field_mb = 0.0;    ///< heights and bounds
     int judged = 0, hits = 0; ///< rays, and those that meet something
     double missed_rate = 0.0; ///< of hits: passes what it should have met, and meets nothing
     double wrong_rate = 0.0;  ///< of hits: farther off than half a pixel's footprint

@@ -12,7 +12,8 @@ namespace {
 using Code = std::uint16_t;
 
 // The inner loops exist twice, for processors with wide integer units and for all others.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
+    !defined(__SANITIZE_ADDRESS__)
 #define TARN_WIDE __attribute__((target_clones("avx2", "default")))
 #else
 #define TARN_WIDE
@@ -93,7 +94,8 @@ Grid<Code> surface_codes(const Heightfield& ground, const Heightfield* water, Co
             if (!same)
                 code = up(ground.offset_m + ground.scale_m * code);
             if (water->codes.values[i] != no_water_code)
-                code = std::max(code, up(water->offset_m + water->scale_m * water->codes.values[i]));
+                code =
+                    std::max(code, up(water->offset_m + water->scale_m * water->codes.values[i]));
             out.values[i] = code;
         }
     });
@@ -132,28 +134,91 @@ std::vector<Code> ladder(const Grid<Code>& codes, int threads) {
     return out;
 }
 
-/// Makes slopes odd where water is in the block or near it, even elsewhere; never less steep.
-constexpr int near_cells = 3; // a walk looks so many cells on before it asks for the next cone
-void mark_water(const Heightfield& water, ConeMap& map, int threads) {
-    const int cols = water.size().cols, rows = water.size().rows, side = 1 << map.shift;
+/// Which blocks of a row have water in them or near.
+std::vector<unsigned char> wet_blocks(const Heightfield* water, const ConeMap& map, int block_row) {
+    constexpr int near_cells = 3; // a walk looks so many cells on before it asks for the next cone
+    std::vector<unsigned char> wet(std::size_t(map.blocks.cols), static_cast<unsigned char>(0));
+    if (!water)
+        return wet;
+    const int cols = water->size().cols, rows = water->size().rows, side = 1 << map.shift;
+    const int r0 = std::max(0, block_row * side - near_cells),
+              r1 = std::min(rows - 1, (block_row + 1) * side + near_cells);
+    for (int r = r0; r <= r1; ++r)
+        for (int c = 0; c < cols; ++c)
+            if (water->codes.values[std::size_t(r) * std::size_t(cols) + std::size_t(c)] !=
+                no_water_code)
+                for (int b = std::max(0, (c - near_cells - 1) / side);
+                     b <= std::min(map.blocks.cols - 1, (c + near_cells) / side); ++b)
+                    wet[std::size_t(b)] = 1;
+    return wet;
+}
+
+/// Greatest codes of ever larger blocks of blocks: level k joins 2^k x 2^k of them.
+std::vector<Grid<Code>> top_pyramid(const ConeMap& map, int threads) {
+    std::vector<Grid<Code>> levels(1, Grid<Code>(map.blocks));
+    for (std::size_t i = 0; i < map.blocks.count(); ++i)
+        levels[0].values[i] = map.texels[2 * i];
+    for (int k = 1; k < 8; ++k) {
+        const Grid<Code>& finer = levels.back();
+        Grid<Code> level({(finer.size.cols + 1) / 2, (finer.size.rows + 1) / 2});
+        share_out(level.size.rows, threads, [&](int first, int last) {
+            for (int r = first; r < last; ++r)
+                for (int c = 0; c < level.size.cols; ++c) {
+                    Code most = 0;
+                    for (int q = 0; q < 4; ++q) {
+                        const Node n{2 * c + q % 2, 2 * r + q / 2};
+                        if (finer.contains(n))
+                            most = std::max(most, finer[n]);
+                    }
+                    level[{c, r}] = most;
+                }
+        });
+        levels.push_back(std::move(level));
+    }
+    return levels;
+}
+
+/// Cells around a block within which nothing is higher than its top, at most 508: the greatest of
+/// 4, 8, 16, ... that squares of blocks certify.
+int free_cells(const std::vector<Grid<Code>>& tops, int shift, int col, int row) {
+    const Code top = tops[0][{col, row}];
+    int free = 0;
+    for (int wanted = 4; wanted <= 512; wanted *= 2) {
+        const int blocks = std::max(1, wanted >> shift);
+        // Blocks of a quarter of the distance: some ten by ten of them.
+        std::size_t k = 0;
+        while (k + 1 < tops.size() && (4 << k) < blocks)
+            ++k;
+        const Grid<Code>& level = tops[k];
+        const int c0 = std::max(0, col - blocks) >> k, r0 = std::max(0, row - blocks) >> k;
+        const int c1 = std::min((col + blocks) >> k, level.size.cols - 1),
+                  r1 = std::min((row + blocks) >> k, level.size.rows - 1);
+        for (int r = r0; r <= r1; ++r)
+            for (int c = c0; c <= c1; ++c)
+                if (level[{c, r}] > top)
+                    return free;
+        free = std::min(wanted, 508);
+    }
+    return free;
+}
+
+/// Puts slope, free distance and the mark of water into one code.
+void pack(const Heightfield* water, Code steepest, ConeMap& map, int threads) {
+    // So that the upper eight bits alone reach the steepest slope: 65280 = 255 * 256.
+    map.slope_m =
+        map.scale_m * std::max<Code>(steepest, 1) * (65535.0 / 65280.0) * (65535.0 / 65280.0);
+    const std::vector<Grid<Code>> tops = top_pyramid(map, threads);
     share_out(map.blocks.rows, threads, [&](int first, int last) {
-        std::vector<unsigned char> wet(std::size_t(map.blocks.cols));
-        for (int block_row = first; block_row < last; ++block_row) {
-            std::fill(wet.begin(), wet.end(), static_cast<unsigned char>(0));
-            const int r0 = std::max(0, block_row * side - near_cells),
-                      r1 = std::min(rows - 1, (block_row + 1) * side + near_cells);
-            for (int r = r0; r <= r1; ++r)
-                for (int c = 0; c < cols; ++c)
-                    if (water.codes.values[std::size_t(r) * std::size_t(cols) + std::size_t(c)] != no_water_code)
-                        for (int b = std::max(0, (c - near_cells - 1) / side);
-                             b <= std::min(map.blocks.cols - 1, (c + near_cells) / side); ++b)
-                            wet[std::size_t(b)] = 1;
-            Code* texels = &map.texels[2 * std::size_t(block_row) * std::size_t(map.blocks.cols)];
-            for (int b = 0; b < map.blocks.cols; ++b) {
-                Code& slope = texels[2 * b + 1];
-                const int odd = wet[std::size_t(b)];
-                if (slope % 2 != odd && slope < 65535)
-                    ++slope; // a dry block of the steepest slope stays odd: looked into in vain
+        for (int r = first; r < last; ++r) {
+            const std::vector<unsigned char> wet = wet_blocks(water, map, r);
+            Code* texels = &map.texels[2 * std::size_t(r) * std::size_t(map.blocks.cols)];
+            for (int c = 0; c < map.blocks.cols; ++c) {
+                const double share =
+                    std::sqrt(double(texels[2 * c + 1]) / std::max<Code>(steepest, 1));
+                // Rounded up; the lower bits add to it.
+                const int high = std::min(255, int(std::ceil(share * 255.0)));
+                const int low = free_cells(tops, map.shift, c, r) / 4 * 2 + wet[std::size_t(c)];
+                texels[2 * c + 1] = static_cast<Code>(256 * high + low);
             }
         }
     });
@@ -177,14 +242,16 @@ ConeMap cone_map(const Heightfield& ground, const Heightfield* water, int shift,
         Code most = 0;
         for (int r = r0; r <= r1; ++r)
             for (int c = c0; c <= c1; ++c)
-                most = std::max(most, field.values[std::size_t(r) * std::size_t(cols) + std::size_t(c)]);
+                most = std::max(most,
+                                field.values[std::size_t(r) * std::size_t(cols) + std::size_t(c)]);
         return most;
     };
     const std::vector<Code> slopes = ladder(codes, threads);
     share_out(map.blocks.rows, threads, [&](int first, int last) {
         for (int r = first; r < last; ++r)
             for (int c = 0; c < map.blocks.cols; ++c) {
-                Code* texel = &map.texels[2 * (std::size_t(r) * std::size_t(map.blocks.cols) + std::size_t(c))];
+                Code* texel = &map.texels[2 * (std::size_t(r) * std::size_t(map.blocks.cols) +
+                                               std::size_t(c))];
                 texel[0] = top(codes, c, r);
                 texel[1] = slopes.front();
             }
@@ -217,14 +284,14 @@ ConeMap cone_map(const Heightfield& ground, const Heightfield* water, int shift,
         share_out(map.blocks.rows, threads, [&](int first, int last) {
             for (int r = first; r < last; ++r)
                 for (int c = 0; c < map.blocks.cols; ++c) {
-                    Code* texel = &map.texels[2 * (std::size_t(r) * std::size_t(map.blocks.cols) + std::size_t(c))];
+                    Code* texel = &map.texels[2 * (std::size_t(r) * std::size_t(map.blocks.cols) +
+                                                   std::size_t(c))];
                     if (texel[1] == slopes[k - 1] && top(dilated, c, r) <= texel[0])
                         texel[1] = slope;
                 }
         });
     }
-    if (water)
-        mark_water(*water, map, threads);
+    pack(water, slopes.front(), map, threads);
     return map;
 }
 

@@ -5,10 +5,15 @@
 ///
 /// Bound   for every place q of the surface and every block C of 2^shift x 2^shift cells
 ///             height(q) <= top(C) + slope(C) * d(q, C),    d = |columns| + |rows| to the block.
-///         So a ray at height z somewhere above C that moves `l` columns plus rows and sinks `s` per
-///         metre of path meets nothing before (z - top) / (slope * l + s) metres.
-/// Why it  In each cell d is linear in the column and linear in the row, for the block's border runs
-/// holds   along grid lines; so is, along each grid line, the bilinear surface. Where a bound holds at
+///         and
+///             height(q) <= top(C)    wherever d(q, C) <= free(C):
+///         over a lake a ray may come down to the water's level at once, however steep the shores.
+///         So a ray at height z somewhere above C that moves `l` columns plus rows and sinks `s`
+///         per metre of path meets nothing before (z - top) / (slope * l + s) metres, nor before
+///         the lesser of (z - top) / s and free / l.
+/// Why it  In each cell d is linear in the column and linear in the row, for the block's border
+/// runs holds   along grid lines; so is, along each grid line, the bilinear surface. Where a bound
+/// holds at
 ///         the four nodes it therefore holds in the whole cell. With the Euclidean distance of
 ///         published cone maps it does not: that distance is convex, lies BELOW its interpolation
 ///         between nodes, and the surface may stick out of a cone that all nodes keep.
@@ -27,11 +32,21 @@ struct ConeMap {
     int shift = 0;        ///< blocks are 2^shift cells a side
     GridSize blocks;      ///< the last ones may reach beyond the field
     double offset_m = 0;  ///< elevation of code 0
-    double scale_m = 1;   ///< metres per code, of tops; metres per code and cell, of slopes
+    double scale_m = 1;   ///< metres per code, of tops
+    double slope_m = 0;   ///< steepest slope [m per cell]; others are (code / 65535)^2 of it
     double highest_m = 0; ///< no place of the surface is higher
-    /// Top and slope of each block, row by row. With water, slopes are odd where there is some in the
-    /// block or within three cells of it, else even (one code steeper if need be).
+    /// Two codes a block, row by row: its top, and its slope with more in the lower eight bits,
+    /// which only make it steeper: bit 0: there is water in the block or within three cells of it;
+    /// bits 1 to 7: a quarter of the free distance in cells.
     std::vector<std::uint16_t> texels;
+
+    double top_m(std::size_t block) const { return offset_m + scale_m * texels[2 * block]; }
+    double slope_m_per_cell(std::size_t block) const {
+        const double share = texels[2 * block + 1] / 65535.0;
+        return slope_m * share * share;
+    }
+    int free_cells(std::size_t block) const { return 4 * (texels[2 * block + 1] % 256 / 2); }
+    bool water_near(std::size_t block) const { return texels[2 * block + 1] % 2 != 0; }
 };
 
 /// @param ground   at least 2 x 2 nodes

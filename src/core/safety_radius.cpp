@@ -12,7 +12,8 @@ namespace {
 using Code = std::uint16_t;
 
 // Inner loops exist twice, for processors with wide integer units and for all others.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
+    !defined(__SANITIZE_ADDRESS__)
 #define TARN_WIDE __attribute__((target_clones("avx2", "default")))
 #else
 #define TARN_WIDE
@@ -42,12 +43,14 @@ int greatest_tangent(const Corners& d, int across, int down) {
         return z + east * ((east > 0 ? across + 1 : across) - u) +
                south * ((south > 0 ? down + 1 : down) - v);
     };
-    return std::max(std::max(plane(d.nw, east_n, south_w, 0, 0), plane(d.ne, east_n, south_e, 1, 0)),
-                    std::max(plane(d.sw, east_s, south_w, 0, 1), plane(d.se, east_s, south_e, 1, 1)));
+    return std::max(
+        std::max(plane(d.nw, east_n, south_w, 0, 0), plane(d.ne, east_n, south_e, 1, 0)),
+        std::max(plane(d.sw, east_s, south_w, 0, 1), plane(d.se, east_s, south_e, 1, 1)));
 }
 
-/// greatest_tangent() of a whole row of cells D, `across` columns and `down` rows from the cells asked for:
-/// clears safe[i] where it rises above highest[i]. No branches, so that it runs some cells at once.
+/// greatest_tangent() of a whole row of cells D, `across` columns and `down` rows from the cells
+/// asked for: clears safe[i] where it rises above highest[i]. No branches, so that it runs some
+/// cells at once.
 TARN_WIDE void test_row(const Code* north, const Code* south_row, int across, int down,
                         const int* highest, unsigned char* safe, int count) {
     for (int i = 0; i < count; ++i) {
@@ -76,8 +79,8 @@ struct Level {
 };
 
 Block joined(const Block& a, const Block& b) {
-    return {std::max(a.highest, b.highest),       std::min(a.east_low, b.east_low),
-            std::max(a.east_high, b.east_high),   std::min(a.south_low, b.south_low),
+    return {std::max(a.highest, b.highest), std::min(a.east_low, b.east_low),
+            std::max(a.east_high, b.east_high), std::min(a.south_low, b.south_low),
             std::max(a.south_high, b.south_high)};
 }
 
@@ -149,9 +152,9 @@ Grid<std::uint8_t> safety_radii(const Heightfield& heights, int threads) {
             }
         return true;
     };
-    // The same for the whole square of `n` cells around a tile of 2^shift cells a side, by bounds over
-    // blocks of 2^(k+1) cells. The tile itself and what is near lie in these blocks, too: bounds only get
-    // larger by that.
+    // The same for the whole square of `n` cells around a tile of 2^shift cells a side, by bounds
+    // over blocks of 2^(k+1) cells. The tile itself and what is near lie in these blocks, too:
+    // bounds only get larger by that.
     const auto square_is_safe = [&](int c, int r, int tile, int highest, int n, int k) {
         const Level& level = levels[std::size_t(k)];
         const int side = 2 << k;
@@ -204,7 +207,8 @@ Grid<std::uint8_t> safety_radii(const Heightfield& heights, int threads) {
                     together[std::size_t(c / tile)] = certified(c, r, tile, lowest);
                 }
             }
-            // Most cells of rough ground end at themselves or at the ring around: those, a row at a time.
+            // Most cells of rough ground end at themselves or at the ring around: those, a row at a
+            // time.
             for (int c = 0; c < across; ++c)
                 highest[std::size_t(c)] = codes.cell(c, r).highest();
             const auto test = [&](int dc, int dr, std::vector<unsigned char>& safe) {

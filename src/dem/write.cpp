@@ -101,13 +101,13 @@ void write_safety_radii(const std::filesystem::path& path, const Grid<std::uint8
     const ThreadOptions no_side_files{{"GDAL_PAM_ENABLED", "NO"}};
     const double s = place.spacing_m;
     auto out = create(path, radii.size, 1, GDT_Byte,
-                      geo_transform(frame, place.west_m + s / 2, place.north_m - s / 2, s), frame.wkt,
-                      false, messages);
+                      geo_transform(frame, place.west_m + s / 2, place.north_m - s / 2, s),
+                      frame.wkt, false, messages);
     out->GetRasterBand(1)->SetDescription("safety radii of the ground [cells + 1]");
-    const CPLErr written = out->GetRasterBand(1)->RasterIO(
-        GF_Write, 0, 0, radii.size.cols, radii.size.rows,
-        const_cast<std::uint8_t*>(radii.values.data()), radii.size.cols, radii.size.rows, GDT_Byte,
-        0, 0);
+    const CPLErr written =
+        out->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, radii.size.cols, radii.size.rows,
+                                        const_cast<std::uint8_t*>(radii.values.data()),
+                                        radii.size.cols, radii.size.rows, GDT_Byte, 0, 0);
     finish(std::move(out), path, written, messages);
 }
 

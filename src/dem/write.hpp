@@ -19,8 +19,8 @@ void write_heightfield(const std::filesystem::path& path, const Heightfield& fie
 void write_heights(const std::filesystem::path& path, const Grid<float>& heights_m,
                    const Heightfield& place, const geo::Frame& frame);
 
-/// UInt8 GeoTIFF of the ground's safety radii (core/safety_radius.hpp), a pixel a cell: its centre lies
-/// between four nodes of `place`.
+/// UInt8 GeoTIFF of the ground's safety radii (core/safety_radius.hpp), a pixel a cell: its centre
+/// lies between four nodes of `place`.
 void write_safety_radii(const std::filesystem::path& path, const Grid<std::uint8_t>& radii,
                         const Heightfield& place, const geo::Frame& frame);
 

@@ -69,7 +69,8 @@ private:
     int width_px_ = 0, height_px_ = 0;
 };
 
-/// Bilinear look-up, edges clamped, for a texture that is made without: bound to a unit it takes precedence.
+/// Bilinear look-up, edges clamped, for a texture that is made without: bound to a unit it takes
+/// precedence.
 class Sampler {
 public:
     Sampler();

@@ -42,8 +42,7 @@ void paste(const fs::path& root, const std::string& file, const std::string& bod
         const auto other = replaced.find(match[1]);
         const std::string wanted = other == replaced.end() ? match[1].str() : other->second;
         if (std::find(out.files.begin(), out.files.end(), wanted) == out.files.end())
-            paste(root, wanted, read_text(root / wanted, text(file, ":", number)), replaced,
-                  out);
+            paste(root, wanted, read_text(root / wanted, text(file, ":", number)), replaced, out);
         out.code += text("#line ", number + 1, " ", index, "\n");
     }
 }

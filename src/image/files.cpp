@@ -144,7 +144,8 @@ Grid<std::uint8_t> read_bytes(const fs::path& path) {
     auto in = open(path);
     const OIIO::ImageSpec spec = in->spec();
     if (spec.nchannels != 1 || spec.format != OIIO::TypeDesc::UINT8)
-        throw Error(path.string() + ": is not an 8-bit, one-channel TIFF", "import the scene again");
+        throw Error(path.string() + ": is not an 8-bit, one-channel TIFF",
+                    "import the scene again");
     Grid<std::uint8_t> out(GridSize{spec.width, spec.height});
     if (!in->read_image(0, 0, 0, 1, OIIO::TypeDesc::UINT8, out.values.data()))
         throw Error(path.string() + ": is damaged (" + in->geterror() + ")",

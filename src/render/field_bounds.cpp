@@ -39,9 +39,9 @@ void FieldBounds::prepare(scene::Walk walk, bool with_water) {
     case scene::Walk::cone_map:
     case scene::Walk::cone_steps:
         if (with_water && surface_cones_.id() == 0)
-            surface_cones_ = build_cones(true, surface_cone_m_);
+            surface_cones_ = build_cones(true, surface_scale_);
         if (!with_water && ground_cones_.id() == 0)
-            ground_cones_ = build_cones(false, ground_cone_m_);
+            ground_cones_ = build_cones(false, ground_scale_);
         break;
     case scene::Walk::safety_exact:
     case scene::Walk::safety_radius:
@@ -124,12 +124,12 @@ void FieldBounds::build_maxima() {
     gpu::check_gl("building the block maxima");
 }
 
-gpu::Texture2D FieldBounds::build_cones(bool with_water, double& cone_m) {
+gpu::Texture2D FieldBounds::build_cones(bool with_water, ConeScale& scale) {
     const ConeMap map = cone_map(scene_.ground, with_water ? &scene_.water : nullptr, shift);
     gpu::Texture2D texture(GL_RG16, map.blocks.cols, map.blocks.rows, 1, gpu::Filter::nearest,
                            "cone map");
     texture.upload(GL_RG, GL_UNSIGNED_SHORT, map.texels.data());
-    cone_m = map.scale_m * 65535.0;
+    scale = {map.scale_m * 65535.0, map.slope_m};
     bytes_ += map.texels.size() * sizeof map.texels[0];
     gpu::check_gl("uploading the cone map");
     return texture;

@@ -24,9 +24,13 @@ public:
     void prepare(scene::Walk walk, bool with_water);
     /// Binds it at TARN_TEXTURE_BOUNDS. prepare() first.
     void bind(scene::Walk walk, bool with_water) const;
-    /// Metres per unit texel of the cone maps, or 0 where there is none yet.
-    double ground_cone_m() const { return ground_cone_m_; }
-    double surface_cone_m() const { return surface_cone_m_; }
+    /// Of a cone map; zeros where there is none yet.
+    struct ConeScale {
+        double top_m = 0.0;   ///< metres per unit texel, of tops
+        double slope_m = 0.0; ///< steepest slope, metres per cell
+    };
+    const ConeScale& ground_cones() const { return ground_scale_; }
+    const ConeScale& surface_cones() const { return surface_scale_; }
     /// Of all that has been made.
     std::size_t bytes() const { return bytes_; }
 
@@ -35,13 +39,13 @@ public:
 private:
     void build_maxima();
     void build_radii();
-    gpu::Texture2D build_cones(bool with_water, double& cone_m);
+    gpu::Texture2D build_cones(bool with_water, ConeScale& scale);
 
     const scene::Scene& scene_;
     const gpu::Texture2D& heights_;
     gpu::Texture2D maxima_, ground_cones_, surface_cones_, radii_;
     gpu::Sampler smooth_;
-    double ground_cone_m_ = 0.0, surface_cone_m_ = 0.0;
+    ConeScale ground_scale_, surface_scale_;
     std::size_t bytes_ = 0;
 };
 

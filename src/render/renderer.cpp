@@ -63,7 +63,8 @@ void Renderer::upload_scene() {
     const float per_m = 1.0f / block_.heights.y;
     block_.base.z = float(1.0 / ground.spacing_m);
     block_.inverse_size = {1.0f / float(size.cols), 1.0f / float(size.rows), 1.0f, 1.0f};
-    block_.units = {per_m, block_.heights.z * per_m, block_.heights.w * per_m, block_.grid.w * per_m};
+    block_.units = {per_m, block_.heights.z * per_m, block_.heights.w * per_m,
+                    block_.grid.w * per_m};
     block_.bounds.w = block_.forward.w * per_m;
     double water_top = -1e6; // where there is none: below everything
     for (const std::uint16_t code : water.codes.values)
@@ -101,21 +102,24 @@ void Renderer::use_walk(scene::Walk walk, double setting) {
     std::replace(file.begin(), file.end(), '-', '_');
     const auto root = gpu::shader_root();
     // See lib/walks/cone_map.glsl.
-    const std::string defined =
-        rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "";
+    const std::string defined = rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "";
     const auto pass = [&](const char* name) {
-        return gpu::ComputeProgram(gpu::load_shader(root, text("passes/", name, ".comp"),
-                                                    {{"lib/walks/cone_map.glsl", "lib/walks/" + file + ".glsl"}}, defined));
+        return gpu::ComputeProgram(gpu::load_shader(
+            root, text("passes/", name, ".comp"),
+            {{"lib/walks/cone_map.glsl", "lib/walks/" + file + ".glsl"}}, defined));
     };
-    passes_.emplace(walk_, WalkPasses{pass("beams"), pass("primary"), pass("secondary"), pass("shadow"), pass("first_hit"), pass("trace_rays")});
+    passes_.emplace(walk_, WalkPasses{pass("beams"), pass("primary"), pass("secondary"),
+                                      pass("shadow"), pass("first_hit"), pass("trace_rays")});
 }
 
 void Renderer::bind_walk(bool with_water) { bounds_.bind(walk_, with_water); }
 
 void Renderer::bind_field(scene::Walk walk, bool with_water) {
     bounds_.prepare(walk, with_water);
-    block_.bounds.x = float(bounds_.ground_cone_m() / block_.heights.y);
-    block_.bounds.y = float(bounds_.surface_cone_m() / block_.heights.y);
+    block_.bounds.x = float(bounds_.ground_cones().top_m / block_.heights.y);
+    block_.bounds.y = float(bounds_.surface_cones().top_m / block_.heights.y);
+    block_.slab.z = float(bounds_.ground_cones().slope_m / block_.heights.y);
+    block_.slab.w = float(bounds_.surface_cones().slope_m / block_.heights.y);
     view_buffer_.write(&block_, sizeof block_);
     glBindBufferBase(GL_UNIFORM_BUFFER, TARN_BLOCK_VIEW, view_buffer_.id());
     heights_.bind(TARN_TEXTURE_HEIGHTS);
@@ -172,7 +176,8 @@ void Renderer::prepare(const scene::View& view) {
             throw Error(text("the overlay is ", o.width_px, " x ", o.height_px, ", the picture ",
                              settings.width_px, " x ", settings.height_px));
         flags |= TARN_FLAG_OVERLAY;
-        overlay_ = gpu::Texture2D(GL_RGBA32F, o.width_px, o.height_px, 1, gpu::Filter::nearest, "overlay");
+        overlay_ =
+            gpu::Texture2D(GL_RGBA32F, o.width_px, o.height_px, 1, gpu::Filter::nearest, "overlay");
         overlay_.upload(GL_RGBA, GL_FLOAT, o.pixels.data());
         overlay_.bind(TARN_TEXTURE_OVERLAY);
     }
@@ -199,7 +204,8 @@ void Renderer::prepare(const scene::View& view) {
     }
     const int tiles_across = (settings.width_px + 7) / 8, tiles_down = (settings.height_px + 7) / 8;
     if (beams_.width_px() != tiles_across || beams_.height_px() != tiles_down)
-        beams_ = gpu::Texture2D(GL_R32F, tiles_across, tiles_down, 1, gpu::Filter::nearest, "beams");
+        beams_ =
+            gpu::Texture2D(GL_R32F, tiles_across, tiles_down, 1, gpu::Filter::nearest, "beams");
     // As wide as the picture, as high as the limit allows.
     const int tile_rows =
         std::min(settings.height_px, std::max(8, tile_pixels / settings.width_px));

@@ -10,8 +10,8 @@
 #include "shared/view_block.h"
 
 #include <functional>
-#include <map>
 #include <glm/vec3.hpp>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -25,8 +25,8 @@ struct FieldRay {
 };
 
 struct FieldHit {
-    float t = 0;     ///< metres
-    float kind = 0;  ///< 0 nothing, 1 ground, 2 water
+    float t = 0;    ///< metres
+    float kind = 0; ///< 0 nothing, 1 ground, 2 water
     float col = 0, row = 0;
 };
 
@@ -55,8 +55,8 @@ public:
 
     /// First hits of any rays.
     /// @param with_water  stop at the water, too
-    std::vector<FieldHit> trace_rays(std::span<const FieldRay> rays, scene::Walk walk, double setting,
-                                     bool with_water, double t_max = 1e9);
+    std::vector<FieldHit> trace_rays(std::span<const FieldRay> rays, scene::Walk walk,
+                                     double setting, bool with_water, double t_max = 1e9);
 
     /// Binds heights, the bounds of a walk and the view block, for a program of one's own (tests).
     void bind_field(scene::Walk walk, bool with_water);

@@ -41,7 +41,8 @@ struct Scene {
     std::vector<NamedCamera> cameras;
     std::optional<Ortho> ortho;
     ImportReport report;
-    /// Of the ground, a value for each cell (core/safety_radius.hpp); made when needed if it is not here.
+    /// Of the ground, a value for each cell (core/safety_radius.hpp); made when needed if it is not
+    /// here.
     std::optional<Grid<std::uint8_t>> safety_radii;
 
     /// The lake whose level is nearest to `level_m`.

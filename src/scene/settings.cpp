@@ -31,7 +31,8 @@ const std::vector<WalkMethod>& walk_methods() {
     static const std::vector<WalkMethod> methods = {
         {Walk::cone_map, "cone-map", "after Dummer 2006, made exact", true, 0, ""},
         {Walk::maximum_mipmap, "maximum-mipmap", "after Tevs et al. 2008", true, 0, ""},
-        {Walk::safety_exact, "safety-exact", "after Baboud & Decoret 2006, made exact", true, 0, ""},
+        {Walk::safety_exact, "safety-exact", "after Baboud & Decoret 2006, made exact", true, 0,
+         ""},
         {Walk::grid, "grid", "Amanatides & Woo 1987", true, 0, ""},
         {Walk::safety_radius, "safety-radius", "Baboud & Decoret 2006", false, 8, "halvings"},
         {Walk::cone_steps, "cone-steps", "Dummer 2006", false, 32, "steps"},

@@ -56,12 +56,13 @@ struct RenderSettings {
     void validate() const;
 };
 
-/// Rasterised things (markers, lines, models) to be mixed with the traced picture: a pixel of theirs shows
-/// where it is nearer than ground and water, through as much water as lies before it. What is seen through
-/// or mirrored in the surface is not theirs to show.
+/// Rasterised things (markers, lines, models) to be mixed with the traced picture: a pixel of
+/// theirs shows where it is nearer than ground and water, through as much water as lies before it.
+/// What is seen through or mirrored in the surface is not theirs to show.
 struct Overlay {
     int width_px = 0, height_px = 0; ///< the picture's
-    std::vector<glm::vec4> pixels;   ///< rgb radiance, a distance along the pixel's ray [m]; 0: nothing
+    std::vector<glm::vec4>
+        pixels; ///< rgb radiance, a distance along the pixel's ray [m]; 0: nothing
 };
 
 /// Everything a tracer needs to know, besides the scene.

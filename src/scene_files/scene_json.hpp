@@ -11,7 +11,8 @@ inline constexpr int schema_version = 2;
 
 /// Names of the rasters inside the folder.
 struct FileNames {
-    std::string ground = "ground.tif", water = "water.tif", heights = "heights.tif", ortho, safety_ground;
+    std::string ground = "ground.tif", water = "water.tif", heights = "heights.tif", ortho,
+                safety_ground;
 };
 
 /// @return the text of scene.json, two-space indented, ending with a newline

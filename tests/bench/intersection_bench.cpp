@@ -1,6 +1,6 @@
-// tarn_intersection_bench — first hits by every method on synthetic lakes: time, and error against the
-// double-precision grid walk. As `tarn bench --intersection`, but made of what draws alone: needs
-// OpenGL 4.5 and EGL, no GDAL and no OpenImageIO, so it runs on a bare GPU machine.
+// tarn_intersection_bench — first hits by every method on synthetic lakes: time, and error against
+// the double-precision grid walk. As `tarn bench --intersection`, but made of what draws alone:
+// needs OpenGL 4.5 and EGL, no GDAL and no OpenImageIO, so it runs on a bare GPU machine.
 //
 //   tarn_intersection_bench [--side N,N,...] [--size WxH,WxH,...] [--view NAME,...]
 //                           [--method NAME,...] [--runs N] [--judged N] [--settings one|all]
@@ -79,11 +79,12 @@ int run(int argc, char** argv) {
     std::vector<bench::IntersectionResult> results;
     for (const std::string& side : split(sides)) {
         const scene::Scene scene = scene::mountain_lake(std::atoi(side.c_str()));
-        for (const auto& r : bench::compare_methods(scene, "mountain lake " + side, chosen, options, {})) {
+        for (const auto& r :
+             bench::compare_methods(scene, "mountain lake " + side, chosen, options, {})) {
             std::printf("%6d^2 %-8s %4dx%-4d %-16s %6g  %9.4f ms (%.4f to %.4f) %7.2f M rays/s  "
                         "missed %.2e wrong %.2e  set-up %.0f ms, %.0f MB\n",
-                        r.nodes, r.view.c_str(), r.width_px, r.height_px, r.method.c_str(), r.setting,
-                        r.time.median_ms, r.time.low_ms, r.time.high_ms,
+                        r.nodes, r.view.c_str(), r.width_px, r.height_px, r.method.c_str(),
+                        r.setting, r.time.median_ms, r.time.low_ms, r.time.high_ms,
                         double(r.width_px) * r.height_px / r.time.median_ms * 1e-3, r.missed_rate,
                         r.wrong_rate, r.set_up_ms, r.field_mb);
             std::fflush(stdout);

@@ -17,8 +17,8 @@ TEST(HeightfieldGpu, FirstCrossingIsTheRootThatBisectionFinds) {
         const float curve = i % 4 == 0 ? 1e-7f * unit(random) * above : 6.0f * unit(random) * above;
         in.emplace_back(above, below, curve, 0);
     }
-    const auto got = test_support::GpuFunction("lib/heightfield.glsl",
-                                               "result.x = first_crossing(Gap(x.x, x.y, x.z));")(in);
+    const auto got = test_support::GpuFunction(
+        "lib/heightfield.glsl", "result.x = first_crossing(Gap(x.x, x.y, x.z));")(in);
     int crossings = 0;
     for (std::size_t i = 0; i < in.size(); ++i) {
         const long double c = in[i].x, e = in[i].y, a = in[i].z, b = e - c - a;

@@ -1,4 +1,5 @@
-// Ways of finding a first hit: the exact ones miss nothing on any field or ray that we could think of.
+// Ways of finding a first hit: the exact ones miss nothing on any field or ray that we could think
+// of.
 #include "bench/adversary.hpp"
 #include "support/gpu_function.hpp"
 
@@ -19,21 +20,24 @@ void expect_exact(const std::string& name, const scene::Scene& scene, int rays_a
             const auto kind = static_cast<bench::RayClass>(k);
             if (with_water && kind == bench::RayClass::from_below)
                 continue; // from below the surface is not a thing to stop at
-            std::vector<bench::TestRay> all = bench::make_rays(scene, kind, rays_a_class, unsigned(k + 1));
+            std::vector<bench::TestRay> all =
+                bench::make_rays(scene, kind, rays_a_class, unsigned(k + 1));
             const auto rounded = bench::round_rays(scene, all);
             for (const scene::WalkMethod& method : scene::walk_methods()) {
                 if (!method.exact)
                     continue;
                 const std::size_t count =
                     method.walk == scene::Walk::cone_map ? all.size() : all.size() / 10;
-                const auto got = renderer.trace_rays(std::span(rounded).first(count), method.walk, 0.0, with_water);
+                const auto got = renderer.trace_rays(std::span(rounded).first(count), method.walk,
+                                                     0.0, with_water);
                 const bench::Verdict v = bench::judge_hits(
                     scene, {all.begin(), all.begin() + std::ptrdiff_t(count)}, got, with_water);
                 EXPECT_EQ(v.failures(), 0)
                     << name << ", " << method.name << ", " << bench::ray_class_names[k]
-                    << (with_water ? ", with water" : "") << ": of " << v.rays << " rays " << v.missed
-                    << " missed, " << v.invented << " invented, " << v.off << " off (worst "
-                    << v.worst_m << " m), " << v.other_surface << " other surface";
+                    << (with_water ? ", with water" : "") << ": of " << v.rays << " rays "
+                    << v.missed << " missed, " << v.invented << " invented, " << v.off
+                    << " off (worst " << v.worst_m << " m), " << v.other_surface
+                    << " other surface";
                 if (method.walk == scene::Walk::cone_map) {
                     rays += v.rays;
                     hits += v.hits;
@@ -65,20 +69,20 @@ TEST(WalksGpu, SizesThatAreNoPowersOfTwoAndLongStrips) {
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     for (const auto& [cols, rows] : std::vector<std::pair<int, int>>{
              {2, 2}, {3, 2}, {5, 5}, {6, 17}, {2, 300}, {401, 3}, {65, 66}, {257, 130}})
-        expect_exact(text(cols, "x", rows),
-                     bench::field_scene({cols, rows}, 3.0, [&](int, int) { return 4.0 * unit(random); }),
-                     600);
+        expect_exact(
+            text(cols, "x", rows),
+            bench::field_scene({cols, rows}, 3.0, [&](int, int) { return 4.0 * unit(random); }),
+            600);
 }
 
 TEST(WalksGpu, PlateausAtTheWatersLevelAndThinFilms) {
     expect_exact("thin films",
-                 bench::field_scene({60, 60}, 10.0,
-                                    [](int c, int r) {
-                                        return c < 20   ? 99.0
-                                               : c < 40 ? 100.0
-                                                        : 100.0 + 0.001 * (r % 3);
-                                    },
-                                    100.0),
+                 bench::field_scene(
+                     {60, 60}, 10.0,
+                     [](int c, int r) {
+                         return c < 20 ? 99.0 : c < 40 ? 100.0 : 100.0 + 0.001 * (r % 3);
+                     },
+                     100.0),
                  5'000);
 }
 
@@ -98,8 +102,8 @@ TEST(WalksGpu, RaysInStepFindTheSame) {
     }
 }
 
-// Not exact, and known to be: each approximate method does fail here, or its entry in the failure table
-// would be wrong.
+// Not exact, and known to be: each approximate method does fail here, or its entry in the failure
+// table would be wrong.
 TEST(WalksGpu, ApproximateMethodsFailWhereTheirFilesSayThatTheyDo) {
     test_support::context();
     for (const auto& field : bench::adversarial_fields()) {

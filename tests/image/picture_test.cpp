@@ -160,8 +160,9 @@ TEST(Picture, WhiteFurnaceNeverGainsEnergy) {
     }
 }
 
-// A pole standing half in the water, rasterised beside the tracer, against the reference's picture without
-// it: it hides what is behind it, is hidden by land and by the surface, and under water pales with distance.
+// A pole standing half in the water, rasterised beside the tracer, against the reference's picture
+// without it: it hides what is behind it, is hidden by land and by the surface, and under water
+// pales with distance.
 TEST(Picture, APoleHalfInTheWaterMixesWithLandAndWaterByDepth) {
     test_support::context();
     const scene::Scene scene = scene::bowl(129); // level 10 m, 10 m deep in the middle
@@ -173,18 +174,21 @@ TEST(Picture, APoleHalfInTheWaterMixesWithLandAndWaterByDepth) {
         scene::View view;
         view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.4, -0.5, 0.7)));
         view.settings = {.width_px = 160, .height_px = 160, .samples = 1};
-        view.camera = from_below ? scene::look({20, 0, 4}, 0, 5, 60) : scene::look({20, -60, 25}, 0, -14, 40);
+        view.camera =
+            from_below ? scene::look({20, 0, 4}, 0, 5, 60) : scene::look({20, -60, 25}, 0, -14, 40);
         const Image plain = reference::trace(scene, view, {});
         const double half = std::tan(0.5 * view.camera.fov_deg * M_PI / 180);
         scene::Overlay overlay{160, 160, std::vector<glm::vec4>(160 * 160, glm::vec4(0))};
         Image expected = plain;
         int shown = 0, hidden = 0, above = 0, below = 0;
         for (int i = 0; i < 160 * 160; ++i) {
-            const glm::dvec3 d = reference::pixel_direction(view.camera.forward, view.camera.right, view.camera.up, {half, half},
-                                                            {(i % 160 + 0.5) / 160, (i / 160 + 0.5) / 160});
+            const glm::dvec3 d = reference::pixel_direction(
+                view.camera.forward, view.camera.right, view.camera.up, {half, half},
+                {(i % 160 + 0.5) / 160, (i / 160 + 0.5) / 160});
             // A ray and an upright cylinder.
             const glm::dvec3 o = view.camera.position - foot;
-            const double a = d.x * d.x + d.y * d.y, b = o.x * d.x + o.y * d.y, c = o.x * o.x + o.y * o.y - radius * radius;
+            const double a = d.x * d.x + d.y * d.y, b = o.x * d.x + o.y * d.y,
+                         c = o.x * o.x + o.y * o.y - radius * radius;
             const double root = b * b - a * c;
             if (root <= 0)
                 continue;
@@ -199,14 +203,19 @@ TEST(Picture, APoleHalfInTheWaterMixesWithLandAndWaterByDepth) {
                 if (from_below) {
                     const auto& optics = scene.optics;
                     const glm::dvec3 attenuation = optics.attenuation_per_m();
-                    const glm::dvec3 sun = view.lighting.sun_direction, under = reference::sun_below(sun, optics.index);
-                    const double share = reference::sun_share_below(sun, under, optics.index, false);
+                    const glm::dvec3 sun = view.lighting.sun_direction,
+                                     under = reference::sun_below(sun, optics.index);
+                    const double share =
+                        reference::sun_share_below(sun, under, optics.index, false);
                     const double depth = 10 - view.camera.position.z;
-                    radiance = radiance * reference::transmittance(attenuation, t) +
-                               reference::path_radiance(optics.backscattering_per_m, attenuation, view.lighting.sun_irradiance * share,
-                                                        1 / under.z, depth, -d.z, t) +
-                               reference::path_radiance(optics.backscattering_per_m, attenuation,
-                                                        view.lighting.sky_irradiance * (0.934 * 1.19), 1.19, depth, -d.z, t);
+                    radiance =
+                        radiance * reference::transmittance(attenuation, t) +
+                        reference::path_radiance(optics.backscattering_per_m, attenuation,
+                                                 view.lighting.sun_irradiance * share, 1 / under.z,
+                                                 depth, -d.z, t) +
+                        reference::path_radiance(optics.backscattering_per_m, attenuation,
+                                                 view.lighting.sky_irradiance * (0.934 * 1.19),
+                                                 1.19, depth, -d.z, t);
                 }
                 expected.radiance[std::size_t(i)] = glm::vec3(radiance);
                 expected.distance_m[std::size_t(i)] = float(t);
@@ -219,13 +228,15 @@ TEST(Picture, APoleHalfInTheWaterMixesWithLandAndWaterByDepth) {
         const image::Difference d = image::compare(got, expected);
         EXPECT_LE(d.mean_relative, 1e-3) << from_below;
         EXPECT_LE(d.p99_relative, 1e-2) << from_below;
-        const image::DistanceDifference z = image::compare_distances(got, expected, scene.ground.scale_m, 1e-5);
+        const image::DistanceDifference z =
+            image::compare_distances(got, expected, scene.ground.scale_m, 1e-5);
         EXPECT_EQ(z.different, 0u) << from_below << " worst " << z.worst_m;
         EXPECT_GT(shown, 100);
         EXPECT_GT(hidden, 100); // beyond the surface: seen refracted, if at all
         EXPECT_EQ(from_below ? above : below, 0);
-        std::printf("%s: %d pixels of the pole shown, %d behind the surface, mean difference %.5f %%\n",
-                    from_below ? "from below" : "from above", shown, hidden, 100 * d.mean_relative);
+        std::printf(
+            "%s: %d pixels of the pole shown, %d behind the surface, mean difference %.5f %%\n",
+            from_below ? "from below" : "from above", shown, hidden, 100 * d.mean_relative);
     }
 }
 

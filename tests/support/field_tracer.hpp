@@ -32,9 +32,11 @@ inline std::vector<TestHit> trace_on_gpu(const scene::Scene& scene, std::vector<
     std::replace(file.begin(), file.end(), '-', '_');
     const GpuFunction trace(
         "lib/walks/" + file + ".glsl",
-        text("Hit hit; vec2 whole = floor(x.xy); Ray ray = ray_from(field_of(view), whole, vec3(x.xy - whole, x.z), y.xyz); bool found = "
+        text("Hit hit; vec2 whole = floor(x.xy); Ray ray = ray_from(field_of(view), whole, "
+             "vec3(x.xy - whole, x.z), y.xyz); bool found = "
              "trace_field(heights, "
-             "bounds, field_of(view), ray, 1e9, ", with_water ? "true" : "false",
+             "bounds, field_of(view), ray, 1e9, ",
+             with_water ? "true" : "false",
              ", hit);\n    if (found) result = vec4(hit.t, hit.water ? 2.0 : 1.0, "
              "float(hit.cell.x) + hit.inside.x, float(hit.cell.y) + hit.inside.y);"),
         "layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;\n"

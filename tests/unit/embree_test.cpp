@@ -1,5 +1,6 @@
-// The double-precision walk over every cell against Embree, which knows nothing of grids: each cell's
-// bilinear surface cut into 12 x 12 squares of two triangles. Where Embree is installed (libembree-dev).
+// The double-precision walk over every cell against Embree, which knows nothing of grids: each
+// cell's bilinear surface cut into 12 x 12 squares of two triangles. Where Embree is installed
+// (libembree-dev).
 #include <gtest/gtest.h>
 
 #if __has_include(<embree3/rtcore.h>)
@@ -16,11 +17,14 @@ namespace {
 /// Calls of Embree with a field whose cells are cut into `cut` x `cut` squares of two triangles.
 class Mesh {
 public:
-    Mesh(const Heightfield& field, int cut) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+    Mesh(const Heightfield& field, int cut)
+        : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
         rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-        const unsigned cols = unsigned((field.size().cols - 1) * cut + 1), rows = unsigned((field.size().rows - 1) * cut + 1);
+        const unsigned cols = unsigned((field.size().cols - 1) * cut + 1),
+                       rows = unsigned((field.size().rows - 1) * cut + 1);
         RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, cols * rows));
+        auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                              RTC_FORMAT_FLOAT3, 12, cols * rows));
         for (unsigned r = 0; r < rows; ++r)
             for (unsigned c = 0; c < cols; ++c) {
                 const double x = field.x_m(double(c) / cut), y = field.y_m(double(r) / cut);
@@ -28,10 +32,13 @@ public:
                 *v++ = float(y);
                 *v++ = float(field.elevation_m(x, y));
             }
-        auto* i = static_cast<unsigned*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, 2 * (cols - 1) * (rows - 1)));
+        auto* i = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+            mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, 2 * (cols - 1) * (rows - 1)));
         for (unsigned r = 0; r + 1 < rows; ++r)
             for (unsigned c = 0; c + 1 < cols; ++c)
-                for (const unsigned k : {r * cols + c, r * cols + c + 1, (r + 1) * cols + c, r * cols + c + 1, (r + 1) * cols + c + 1, (r + 1) * cols + c})
+                for (const unsigned k :
+                     {r * cols + c, r * cols + c + 1, (r + 1) * cols + c, r * cols + c + 1,
+                      (r + 1) * cols + c + 1, (r + 1) * cols + c})
                     *i++ = k;
         rtcCommitGeometry(mesh);
         rtcAttachGeometry(scene_, mesh);
@@ -60,7 +67,8 @@ public:
         query.ray.mask = ~0u;
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(scene_, &context, &query);
-        return query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<double>::infinity() : query.ray.tfar;
+        return query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<double>::infinity()
+                                                           : query.ray.tfar;
     }
 
 private:
@@ -81,51 +89,65 @@ TEST(Embree, FindsWhatTheReferenceFinds) {
         double twist = 0.0;
         for (int r = 0; r + 1 < g.size().rows; ++r)
             for (int c = 0; c + 1 < g.size().cols; ++c)
-                twist = std::max(twist, std::abs(g.elevation_m(Node{c, r}) - g.elevation_m(Node{c + 1, r}) -
-                                                 g.elevation_m(Node{c, r + 1}) + g.elevation_m(Node{c + 1, r + 1})));
-        // ... and Embree counts in float: some 6e-8 of a kilometre for origin, direction and vertex each.
+                twist = std::max(
+                    twist,
+                    std::abs(g.elevation_m(Node{c, r}) - g.elevation_m(Node{c + 1, r}) -
+                             g.elevation_m(Node{c, r + 1}) + g.elevation_m(Node{c + 1, r + 1})));
+        // ... and Embree counts in float: some 6e-8 of a kilometre for origin, direction and vertex
+        // each.
         const double mesh_error_m = 0.25 * twist / (cut * cut) + 5e-4;
         long judged = 0, hits = 0, lost = 0;
-        for (const auto kind : {bench::RayClass::any, bench::RayClass::straight_down, bench::RayClass::through_node,
-                                bench::RayClass::grazing}) {
+        for (const auto kind : {bench::RayClass::any, bench::RayClass::straight_down,
+                                bench::RayClass::through_node, bench::RayClass::grazing}) {
             for (const bench::TestRay& ray : bench::make_rays(field.scene, kind, 4'000, 9)) {
                 // Only rays that come from over the field: Embree's surface has no sides.
                 const auto over = [&](glm::dvec3 p) {
-                    return p.x > g.west_m && p.x < g.east_m() && p.y > g.south_m() && p.y < g.north_m;
+                    return p.x > g.west_m && p.x < g.east_m() && p.y > g.south_m() &&
+                           p.y < g.north_m;
                 };
-                if (!over(ray.origin) || ray.origin.z < g.elevation_m(ray.origin.x, ray.origin.y) + mesh_error_m)
+                if (!over(ray.origin) ||
+                    ray.origin.z < g.elevation_m(ray.origin.x, ray.origin.y) + mesh_error_m)
                     continue;
                 const auto first = [&](double dz, double dx, double dy) {
-                    const auto hit = reference::trace_field(g, nullptr, ray.origin + glm::dvec3(dx, dy, dz), ray.direction, 1e9);
+                    const auto hit = reference::trace_field(
+                        g, nullptr, ray.origin + glm::dvec3(dx, dy, dz), ray.direction, 1e9);
                     return hit ? hit->t : std::numeric_limits<double>::infinity();
                 };
                 // Right is anything between the answers for rays moved by the mesh's own error.
                 double nearest = first(0, 0, 0), farthest = nearest;
                 const double aside = 2e-5 * (glm::length(ray.origin) + 100.0) * 1e-1 + 1e-4;
                 for (const double dz : {-mesh_error_m, 0.0, mesh_error_m})
-                    for (const auto& [dx, dy] : {std::pair{0.0, 0.0}, {aside, 0.0}, {-aside, 0.0}, {0.0, aside}, {0.0, -aside}}) {
+                    for (const auto& [dx, dy] : {std::pair{0.0, 0.0},
+                                                 {aside, 0.0},
+                                                 {-aside, 0.0},
+                                                 {0.0, aside},
+                                                 {0.0, -aside}}) {
                         const double t = first(dz, dx, dy);
                         nearest = std::min(nearest, t);
                         farthest = std::max(farthest, t);
                     }
                 double got = mesh.first_hit(ray);
                 if (got > farthest * (1 + 1e-5) + 1e-3) {
-                    // Embree loses some of the rays that are aimed exactly at a vertex of its mesh, even in
-                    // its robust mode; a hair aside it does not. No others.
+                    // Embree loses some of the rays that are aimed exactly at a vertex of its mesh,
+                    // even in its robust mode; a hair aside it does not. No others.
                     ASSERT_EQ(kind, bench::RayClass::through_node) << field.name;
                     ++lost;
-                    got = mesh.first_hit({ray.origin + glm::dvec3(aside, 0.3 * aside, 0), ray.direction});
+                    got = mesh.first_hit(
+                        {ray.origin + glm::dvec3(aside, 0.3 * aside, 0), ray.direction});
                 }
                 ++judged;
                 hits += std::isfinite(got);
-                ASSERT_GE(got, nearest - 1e-5 * std::min(nearest, 1e6) - 1e-3) << field.name << " " << bench::ray_class_names[std::size_t(kind)];
-                ASSERT_TRUE(got <= farthest + 1e-5 * std::min(farthest, 1e6) + 1e-3) << field.name << ": " << got << " " << farthest;
+                ASSERT_GE(got, nearest - 1e-5 * std::min(nearest, 1e6) - 1e-3)
+                    << field.name << " " << bench::ray_class_names[std::size_t(kind)];
+                ASSERT_TRUE(got <= farthest + 1e-5 * std::min(farthest, 1e6) + 1e-3)
+                    << field.name << ": " << got << " " << farthest;
             }
         }
         EXPECT_GT(hits, judged / 5) << field.name;
         EXPECT_GT(judged, 3'000) << field.name;
         EXPECT_LT(lost, 40) << field.name;
-        std::printf("%s: %ld rays, %ld hits, %ld lost by Embree at vertices\n", field.name.c_str(), judged, hits, lost);
+        std::printf("%s: %ld rays, %ld hits, %ld lost by Embree at vertices\n", field.name.c_str(),
+                    judged, hits, lost);
     }
 }
 

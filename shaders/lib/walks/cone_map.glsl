@@ -1,14 +1,14 @@
 // lib/walks/cone_map.glsl — exact: from cone to cone through the air, then cell by cell.
 //
-// Source   cone step mapping (Dummer 2006) made conservative for the bilinear surface by measuring
+// Source   cone step mapping (Dummer 2006) with a plain disc around each cone's foot, made conservative for the bilinear surface by measuring
 //          distance as columns plus rows (src/core/cone_map.hpp says why that suffices), and ended by
 //          the exact patch. The union of the seed's safety distances with exactness.
 // Exact    Cones are only left where the next step would be shorter than a cell; there the cell is
 //          solved and left through its border, in integers. No step is shorter than that and no
 //          epsilon is needed: at most two steps for each column and row crossed.
 // Fails    at float32's limits only: docs/limits.md. Slow where a ray skims rough ground for long.
-// Bounds   RG16, a texel a block: top and slope, of the ground, or of the higher of ground and water
-//          (then odd slopes say that water is near).
+// Bounds   RG16, a texel a block, of the ground, or of the higher of ground and water: its top; and slope, free
+//          distance and the mark of water in one code (src/core/cone_map.hpp).
 #include "lib/heightfield.glsl"
 #define TARN_WALK_HAS_BEAMS
 
@@ -21,6 +21,12 @@
 #define TARN_LOOKS 3
 #endif
 
+// A texel of the bounds: how to read its second channel.
+float cone_slope(float code, float steepest) { return code * code * steepest; }
+// Cells around the block free of anything higher than its top, or a little less.
+float cone_free(float code) { return 512.0 * fract(code * (65535.0 / 256.0) + 0.5 / 256.0) - 3.0; }
+bool cone_wet(float code) { return fract(code * 32767.5 + 0.25) > 0.5; }
+
 // beam_reach — metres that all rays of a beam fly before any of them can meet something.
 //
 //   spread   greatest difference of the beam's unit directions from the middle ray's
@@ -29,6 +35,7 @@ float beam_reach(sampler2D bounds, Field field, Ray middle, float spread, bool w
     vec2 o = middle.origin.xy + middle.base, d = middle.direction.xy;
     float oz = middle.origin.z * field.per_m, dz = middle.direction.z * field.per_m;
     float unit = with_water ? field.cone.y : field.cone.x;
+    float steepest = with_water ? field.slope.y : field.slope.x;
     float side = float(1 << field.shift);
     vec2 size = side * vec2(textureSize(bounds, 0));
     float far = 1.5 * (abs(o.x) + abs(o.y) + size.x + size.y) / max(abs(d.x) + abs(d.y), 1e-6);
@@ -41,13 +48,15 @@ float beam_reach(sampler2D bounds, Field field, Ray middle, float spread, bool w
         vec2 at = o + t * d;
         // Outside the field the nearest block's cone is as far away as it is.
         vec2 out_by = max(abs(at - 0.5 * size) - 0.5 * size, 0.0);
-        vec2 cone = textureLod(bounds, at / size, 0.0).rg * unit;
-        float reach = aside + t * across + out_by.x + out_by.y;
-        float gap = oz + t * dz - slack - cone.x - reach * cone.y - t * spread * field.per_m;
-        float closing = max(cone.y * pace + sink, 1e-12);
-        if (gap * pace < side * closing)
+        vec2 cone = textureLod(bounds, at / size, 0.0).rg;
+        float slope = cone_slope(cone.y, steepest), reach = aside + t * across + out_by.x + out_by.y;
+        float gap = oz + t * dz - slack - cone.x * unit - t * spread * field.per_m;
+        float by_cone = (gap - reach * slope) / max(slope * pace + sink, 1e-12);
+        float by_plain = min(gap / max(sink, 1e-12), (cone_free(cone.y) - reach) / pace);
+        float stride = max(by_cone, by_plain);
+        if (stride * pace < side)
             break;
-        t += gap / closing;
+        t += stride;
     }
     return min(t, far);
 }
@@ -63,6 +72,7 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
     float t = span.t;
     float pace = abs(span.d.x) + abs(span.d.y); // columns plus rows a metre
     float unit = with_water ? field.cone.y : field.cone.x;
+    float steepest = with_water ? field.slope.y : field.slope.x;
     // Blocks are looked up at rounded places, by the filter unit: a ray may be this much [cells]
     // outside the block that it gets; 1/64 of a texel is for the unit (it keeps 8 bits or more).
     vec2 whole = span.o + ray.base;
@@ -70,9 +80,9 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
     vec2 per_cell = 1.0 / (side * vec2(textureSize(bounds, 0)));
     float aside = 3e-7 * (pace * span.t_end + abs(whole.x) + abs(whole.y)) + side / 64.0;
     vec2 at = whole * per_cell, step_at = span.d * per_cell;
-    float above = span.oz - span.slack, tilt = unit * pace;
+    float above = span.oz - span.slack;
+    float inverse_pace = 1.0 / pace, inverse_sink = 1.0 / max(-span.dz, 1e-12);
     vec2 cell = cell_at(span, t);
-    float least = pace / least_step;
     int steps = int(2.0 / least_step * (field.cells.x + field.cells.y)) + 8;
     float t_out;
     Meeting m;
@@ -86,17 +96,20 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
         while (true) {
 #endif
             cone = textureLod(bounds, at + t * step_at, 0.0).rg;
-            float gap = above + t * span.dz - unit * (cone.x + aside * cone.y);
-            float closing = max(tilt * cone.y - span.dz, 1e-12); // of ray and cone, per metre
+            float slope = cone_slope(cone.y, steepest);
+            float gap = above + t * span.dz - unit * cone.x;
+            float by_cone = (gap - aside * slope) / max(slope * pace - span.dz, 1e-12);
+            float by_plain = min(gap * inverse_sink, (cone_free(cone.y) - aside) * inverse_pace);
+            float stride = max(by_cone, by_plain);
 #ifdef TARN_CONES_A_LOOK
-            look = gap * least < closing || --steps < 0;
+            look = stride * pace < least_step || --steps < 0;
             if (look)
                 break;
 #else
-            if (gap * least < closing || --steps < 0)
+            if (stride * pace < least_step || --steps < 0)
                 break;
 #endif
-            t += gap / closing;
+            t += stride;
             if (t >= span.t_end)
                 return false;
         }
@@ -106,8 +119,7 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
         if (!look)
             continue;
 #endif
-        // Odd slopes: there is water within three cells.
-        bool wet = with_water && fract(cone.y * 32767.5) > 0.25;
+        bool wet = with_water && cone_wet(cone.y);
         for (int k = 0; k < TARN_LOOKS; ++k) {
             vec2 t_border = borders(span, cell);
             t_out = min(min(t_border.x, t_border.y), span.t_end);

@@ -14,12 +14,13 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
         return false;
     float t = span.t, pace = abs(span.d.x) + abs(span.d.y);
     float unit = with_water ? field.cone.y : field.cone.x;
+    float steepest = with_water ? field.slope.y : field.slope.x;
     vec2 per_cell = 1.0 / (float(1 << field.shift) * vec2(textureSize(bounds, 0)));
     vec2 at = (span.o + ray.base) * per_cell, step_at = span.d * per_cell;
     for (float i = 0.0; i < field.setting; ++i) {
-        vec2 cone = textureLod(bounds, at + t * step_at, 0.0).rg * unit;
-        float gap = span.oz + t * span.dz - cone.x;
-        float closing = max(cone.y * pace - span.dz, 1e-12);
+        vec2 cone = textureLod(bounds, at + t * step_at, 0.0).rg;
+        float gap = span.oz + t * span.dz - cone.x * unit;
+        float closing = max(cone.y * cone.y * steepest * pace - span.dz, 1e-12);
         if (gap * pace < 0.25 * closing)
             break;
         t += gap / closing;
