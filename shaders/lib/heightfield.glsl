@@ -1,7 +1,7 @@
 // lib/heightfield.glsl — what every way of finding a ray's first hit shares: the field, rays, the part of a
 // ray that can meet anything, and the exact answer inside one cell. The ways themselves are in lib/walks/,
-// one a file, each a function trace_field(); passes include lib/walk.glsl, which the program replaces by
-// the one chosen.
+// one a file, each a function trace_field(); passes include lib/walks/chosen.glsl, where the program puts the
+// one asked for.
 // Pure functions; samplers are parameters. C++ twin: src/reference/heightfield.hpp
 //
 // Surface  bilinear between nodes (Ramsey, Potter & Hansen 2004 solve the same patch). Four texels are

@@ -2,7 +2,7 @@
 // passes/beams.comp — for each tile of 8 x 8 pixels how far all its rays fly through free air.
 // Reads bounds; writes beams [m]. One invocation a tile. Walks that have no beams write 0.
 #include "lib/camera.glsl"
-#include "lib/walk.glsl"
+#include "lib/walks/chosen.glsl"
 
 layout(local_size_x = 8, local_size_y = 4) in;
 layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;

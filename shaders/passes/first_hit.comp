@@ -4,7 +4,7 @@
 // Reads heights, bounds and beams; writes distances: > 0 ground, < 0 water, 0 nothing. One invocation a
 // pixel.
 #include "lib/camera.glsl"
-#include "lib/walk.glsl"
+#include "lib/walks/chosen.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;

@@ -3,7 +3,7 @@
 // Reads heights, bounds and hits 0; writes hits 1 and 2. One invocation a pixel of the tile and part
 // (z). Only walks: see lib/parts.glsl.
 #include "lib/parts.glsl"
-#include "lib/walk.glsl"
+#include "lib/walks/chosen.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;

@@ -6,7 +6,7 @@
 #include "lib/parts.glsl"
 #include "lib/sunlight.glsl"
 #include "lib/surface.glsl"
-#include "lib/walk.glsl"
+#include "lib/walks/chosen.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;

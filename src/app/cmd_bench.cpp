@@ -6,13 +6,16 @@
 #include "core/error.hpp"
 #include "core/text.hpp"
 #include "gpu/context.hpp"
+#include "image/files.hpp"
 #include "scene/samples.hpp"
 #include "scene_files/scene_folder.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <glm/geometric.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -24,7 +27,7 @@ namespace {
 using nlohmann::json;
 
 struct Words {
-    std::string scene, size = "800x600", json_file, chart, from;
+    std::string scene, size = "800x600", json_file, chart, from, pictures;
     std::vector<std::string> methods, views;
     int synthetic = 1024, runs = 7, rays = 20'000;
     bool intersection = false, failures = false;
@@ -166,6 +169,41 @@ TradePlot trades_of(const json& all) {
     return plot;
 }
 
+/// One field as an exact method and as another one shows it, side by side.
+void draw_failure(const scene::Scene& field, const scene::WalkMethod& method,
+                  const std::string& path) {
+    const Heightfield& g = field.ground;
+    const double w = g.east_m() - g.west_m, h = g.north_m - g.south_m();
+    const double low = g.min_elevation_m(), relief = g.max_elevation_m() - low;
+    const double rise = std::min(0.6 * relief, 0.35 * w) + 0.05 * w;
+    const glm::dvec3 from(g.west_m + 0.62 * w, g.south_m() - 0.25 * h, low + rise);
+    scene::View view;
+    view.camera =
+        scene::look_along(from, glm::dvec3(-0.1 * w, 0.75 * h, -0.8 * rise), {0, 0, 1}, 50.0);
+    view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.8, -0.2, 0.5)));
+    view.settings = {};
+    view.settings.width_px = 400;
+    view.settings.height_px = 300;
+    view.settings.samples = 1;
+    view.settings.ground_albedo = 0.4;
+    render::Renderer renderer(field);
+    const Image right = renderer.draw(view);
+    view.settings.walk = method.walk;
+    const Image wrong = renderer.draw(view);
+    Picture picture{.width_px = 808, .height_px = 300, .channels = 3, .bytes = {}};
+    for (int y = 0; y < 300; ++y)
+        for (int x = 0; x < 808; ++x)
+            for (int k = 0; k < 3; ++k) {
+                const Image& image = x < 400 ? right : wrong;
+                const int column = x < 400 ? x : x - 408;
+                const double value =
+                    column < 0 ? 1.0 : double(image.radiance[std::size_t(y * 400 + column)][k]);
+                picture.bytes.push_back(std::uint8_t(
+                    std::clamp(255.0 * std::pow(std::max(0.0, value), 1 / 2.2), 0.0, 255.0)));
+            }
+    image::write_png(path, picture, {});
+}
+
 /// Share of failures of each method for each class of ray, over fields made to break it.
 void print_failures(const Words& words) {
     const gpu::Context context;
@@ -185,6 +223,8 @@ void print_failures(const Words& words) {
         if (!words.methods.empty() && std::find(words.methods.begin(), words.methods.end(),
                                                 method.name) == words.methods.end())
             continue;
+        double worst_share = 0.0;
+        const scene::Scene* worst = nullptr;
         for (const auto& field : fields) {
             progress.report(double(done++) / double(fields.size() * scene::walk_methods().size()),
                             method.name);
@@ -197,14 +237,22 @@ void print_failures(const Words& words) {
                 const auto got = renderer.trace_rays(rounded, method.walk, 0.0, false);
                 const bench::Verdict v = bench::judge_hits(field.scene, rays, got, false);
                 const double hits = std::max(1, v.hits);
-                if (v.failures() == 0)
+                // Off by less than half a cell is a matter of settings; this is one of method.
+                const int bad = v.missed + v.far_off + v.invented;
+                if (bad / hits > worst_share) {
+                    worst_share = bad / hits;
+                    worst = &field.scene;
+                }
+                if (v.failures() == 0) // nothing at all, not even by a quantum
                     row += " 0 |";
                 else
                     row += text(" ", fixed(100.0 * v.missed / hits, 2), " + ",
-                                fixed(100.0 * (v.off + v.invented) / hits, 2), " |");
+                                fixed(100.0 * (v.far_off + v.invented) / hits, 2), " |");
             }
-            std::cout << row << "\n";
+            std::cout << row << "\n" << std::flush;
         }
+        if (worst && !words.pictures.empty())
+            draw_failure(*worst, method, words.pictures + "/failure_" + method.name + ".png");
     }
     end_progress();
 }
@@ -254,6 +302,8 @@ void add_bench(CLI::App& app, Run& run) {
         ->capture_default_str();
     c->add_flag("--failures", words->failures,
                 "instead: a table of failures over fields and rays made to break methods");
+    c->add_option("--pictures", words->pictures,
+                  "with --failures: a folder for a picture of each method's worst field");
     c->add_option("--json", words->json_file, "write the results");
     c->add_option("--chart", words->chart, "draw time against error (.svg, .png, .pdf)");
     c->add_option("--from", words->from, "results of an earlier --json instead of measuring");

@@ -152,10 +152,14 @@ std::vector<render::FieldRay> round_rays(const scene::Scene& scene, std::vector<
     std::vector<render::FieldRay> out;
     out.reserve(rays.size());
     for (TestRay& ray : rays) {
-        const glm::vec3 grid(float(g.col(ray.origin.x)), float(g.row(ray.origin.y)),
+        const glm::dvec2 node(std::floor(g.col(ray.origin.x)), std::floor(g.row(ray.origin.y)));
+        const glm::vec2 base(node);
+        const glm::vec3 rest(float(g.col(ray.origin.x) - double(base.x)),
+                             float(g.row(ray.origin.y) - double(base.y)),
                              float(ray.origin.z - g.offset_m));
-        out.push_back({grid, glm::vec3(ray.direction)});
-        ray.origin = {g.x_m(grid.x), g.y_m(grid.y), g.offset_m + double(grid.z)};
+        out.push_back({base, rest, glm::vec3(ray.direction)});
+        ray.origin = {g.x_m(double(base.x) + double(rest.x)),
+                      g.y_m(double(base.y) + double(rest.y)), g.offset_m + double(rest.z)};
         ray.direction = glm::dvec3(out.back().direction);
     }
     return out;
@@ -208,6 +212,7 @@ Verdict judge_hits(const scene::Scene& scene, const std::vector<TestRay>& rays,
                 }
                 if (got.t < nearest - allowed || got.t > farthest + allowed) {
                     ++v.off;
+                    v.far_off += error > 0.5 * scene.ground.spacing_m;
                     if (error > v.worst_m) {
                         v.worst_m = error;
                         v.worst_ray = ray;
@@ -231,6 +236,7 @@ Verdict judge_hits(const scene::Scene& scene, const std::vector<TestRay>& rays,
         total.missed += v.missed;
         total.invented += v.invented;
         total.off += v.off;
+        total.far_off += v.far_off;
         total.other_surface += v.other_surface;
         if (v.worst_m > total.worst_m) {
             total.worst_m = v.worst_m;

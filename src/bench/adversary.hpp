@@ -57,6 +57,7 @@ struct Verdict {
     int missed = 0;        ///< passes what it should have met and meets nothing
     int invented = 0;      ///< meets what is not there
     int off = 0;           ///< farther off than max(1 quantum, 1e-5 of the distance)
+    int far_off = 0;       ///< of those: by more than half a cell
     int other_surface = 0; ///< water for ground or ground for water
     double worst_m = 0.0;  ///< greatest distance error of those that are off
     TestRay worst_ray{};

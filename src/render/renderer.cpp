@@ -289,8 +289,8 @@ std::vector<FieldHit> Renderer::trace_rays(std::span<const FieldRay> rays, scene
         const std::size_t count = std::min(batch, rays.size() - first);
         packed.clear();
         for (const FieldRay& ray : rays.subspan(first, count)) {
-            packed.emplace_back(ray.origin, 0.0f);
-            packed.emplace_back(ray.direction, 0.0f);
+            packed.emplace_back(ray.origin, ray.base.x);
+            packed.emplace_back(ray.direction, ray.base.y);
         }
         const gpu::Buffer in(packed.size() * sizeof packed[0], packed.data());
         const gpu::Buffer out(count * sizeof(FieldHit), nullptr);

@@ -10,6 +10,7 @@
 #include "shared/view_block.h"
 
 #include <functional>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <map>
 #include <optional>
@@ -20,7 +21,8 @@ namespace tarn::render {
 
 /// A ray as the GPU gets it, in single precision.
 struct FieldRay {
-    glm::vec3 origin;    ///< columns, rows, metres above the ground's offset_m
+    glm::vec2 base;      ///< a whole node near the origin, column and row
+    glm::vec3 origin;    ///< columns and rows from there, metres above the ground's offset_m
     glm::vec3 direction; ///< unit, scene axes
 };
 

@@ -6,7 +6,7 @@
 // Fails    as uniform steps, sooner; and the secant is off wherever the surface bends within a step:
 //          stair-like shells on slopes. Never sees that it failed.
 // Bounds   the heights, filtered.
-#include "lib/sampled_surface.glsl"
+#include "lib/walks/sampled.glsl"
 
 bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, float t_max, bool with_water, out Hit hit) {
     Span span;

@@ -8,7 +8,7 @@
 // Fails    where the radius is 0 a ray can cut a crest within a texel unseen; at slanting steps along rough
 //          ground that is common. No guard here: safety_exact.glsl is the guarded one.
 // Bounds   R8, a texel a cell.
-#include "lib/sampled_surface.glsl"
+#include "lib/walks/sampled.glsl"
 
 bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, float t_max, bool with_water, out Hit hit) {
     Span span;

@@ -5,7 +5,7 @@
 // Fails    passes whatever is thinner than a step: ridges, needles, far crests - more of it the flatter the
 //          ray and the larger the field, since the number of steps is fixed. Never sees that it failed.
 // Bounds   the heights, filtered.
-#include "lib/sampled_surface.glsl"
+#include "lib/walks/sampled.glsl"
 
 bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, float t_max, bool with_water, out Hit hit) {
     Span span;

@@ -1,5 +1,4 @@
-// lib/sampled_surface.glsl — the field as the sampling methods of lib/walks/ see it: heights at points.
-// Pure functions; samplers are parameters. C++ twin: src/reference/sampled_surface.hpp
+// lib/walks/sampled.glsl — the field as the sampling methods see it: heights at points. No method itself.
 
 #include "lib/heightfield.glsl"
 
