@@ -1,6 +1,7 @@
 #include "core/cone_map.hpp"
 
 #include "core/parallel.hpp"
+#include "core/wide.hpp"
 
 #include <cassert>
 #include <cmath>
@@ -10,14 +11,6 @@ namespace tarn {
 namespace {
 
 using Code = std::uint16_t;
-
-// The inner loops exist twice, for processors with wide integer units and for all others.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
-    !defined(__SANITIZE_ADDRESS__)
-#define TARN_WIDE __attribute__((target_clones("avx2", "default")))
-#else
-#define TARN_WIDE
-#endif
 
 /// to[i] = max(to[i], from[i] - drop)
 TARN_WIDE void raise(Code* __restrict to, const Code* __restrict from, Code drop, int count) {

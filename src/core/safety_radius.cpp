@@ -1,6 +1,7 @@
 #include "core/safety_radius.hpp"
 
 #include "core/parallel.hpp"
+#include "core/wide.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,14 +11,6 @@ namespace tarn {
 namespace {
 
 using Code = std::uint16_t;
-
-// Inner loops exist twice, for processors with wide integer units and for all others.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
-    !defined(__SANITIZE_ADDRESS__)
-#define TARN_WIDE __attribute__((target_clones("avx2", "default")))
-#else
-#define TARN_WIDE
-#endif
 
 /// Four corner heights of a cell.
 struct Corners {

@@ -2,7 +2,8 @@
 // needs OpenGL 4.5 and EGL, no GDAL and no OpenImageIO, so it runs on a bare GPU machine.
 //
 //   tarn_frame_bench [--side N,N,...] [--size WxH,WxH,...] [--view high,shore,dive]
-//                    [--frames N] [--json FILE] [--ppm PREFIX]
+//                    [--intersection METHOD] [--frames N] [--json FILE] [--ppm PREFIX]
+#include "bench/timing.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
 #include "gpu/context.hpp"
@@ -44,42 +45,6 @@ scene::Camera camera_for(const std::string& view) {
     return scene::look({600, -1500, 918}, 200.0, 6.0, 75.0); // dive
 }
 
-struct Times {
-    double median_ms, low_ms, high_ms; ///< quartiles
-    const char* clock;
-};
-
-/// GPU timer where it works, else from finish to finish with the CPU's clock (software GL answers
-/// about a nanosecond to every timer query).
-Times measure(render::Renderer& renderer, int frames) {
-    // A third of a second, at least twice: long enough for a GPU to leave its idle clock.
-    const auto begin = std::chrono::steady_clock::now();
-    for (int i = 0;
-         i < 2 || std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(330); ++i) {
-        renderer.draw_once();
-        glFinish();
-    }
-    std::vector<double> gpu, cpu;
-    gpu::Timer timer;
-    for (int i = 0; i < frames; ++i) {
-        const auto start = std::chrono::steady_clock::now();
-        timer.start();
-        renderer.draw_once();
-        timer.stop();
-        glFinish();
-        cpu.push_back(
-            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-                .count());
-        gpu.push_back(timer.milliseconds());
-    }
-    std::sort(gpu.begin(), gpu.end());
-    std::sort(cpu.begin(), cpu.end());
-    const std::size_t n = gpu.size();
-    const bool usable = gpu[n / 2] > 1e-3;
-    const auto& t = usable ? gpu : cpu;
-    return {t[n / 2], t[n / 4], t[n * 3 / 4], usable ? "gpu timer" : "finish to finish"};
-}
-
 void write_ppm(const std::string& path, const Image& image) {
     std::ofstream out(path, std::ios::binary);
     out << "P6\n" << image.width_px << " " << image.height_px << "\n255\n";
@@ -93,7 +58,7 @@ void write_ppm(const std::string& path, const Image& image) {
 int run(int argc, char** argv) {
     std::string sides = "1024,4096", sizes = "800x600,1920x1080,3840x2160",
                 views = "high,shore,dive";
-    std::string json_path, ppm;
+    std::string json_path, ppm, method = scene::walk_methods().front().name;
     int frames = 41;
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
@@ -106,6 +71,8 @@ int run(int argc, char** argv) {
             sizes = value;
         else if (word == "--view")
             views = value;
+        else if (word == "--intersection")
+            method = value;
         else if (word == "--frames")
             frames = std::max(1, std::atoi(value.c_str()));
         else if (word == "--json")
@@ -150,15 +117,20 @@ int run(int argc, char** argv) {
                                      .refraction = mode.split};
                     if (!mode.split)
                         view.settings.ground_albedo = 0.2; // the walk alone, without colours
+                    for (const scene::WalkMethod& m : scene::walk_methods())
+                        if (method == m.name)
+                            view.settings.walk = m.walk;
                     renderer.prepare(view);
-                    const Times t = measure(renderer, frames);
+                    const bench::Times t =
+                        bench::time_on_gpu([&] { renderer.draw_once(); }, frames);
                     std::printf(
                         "%6s^2  %-5s  %-9s  %-12s  %9.3f ms  (quartiles %.3f to %.3f, %s)\n",
                         side.c_str(), name.c_str(), size.c_str(), mode.name, t.median_ms, t.low_ms,
                         t.high_ms, t.clock);
                     json +=
-                        text(first ? "\n" : ",\n", "{\"field\": ", side, ", \"view\": \"", name,
-                             "\", \"width\": ", w, ", \"height\": ", h, ", \"mode\": \"", mode.name,
+                        text(first ? "\n" : ",\n", "{\"field\": ", side, ", \"intersection\": \"",
+                             method, "\", \"view\": \"", name, "\", \"width\": ", w,
+                             ", \"height\": ", h, ", \"mode\": \"", mode.name,
                              "\", \"median_ms\": ", t.median_ms, ", \"q1_ms\": ", t.low_ms,
                              ", \"q3_ms\": ", t.high_ms, ", \"clock\": \"", t.clock, "\"}");
                     first = false;

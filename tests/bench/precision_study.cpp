@@ -32,8 +32,8 @@ void distances() {
         bench::field_scene({2049, 2049}, 1.0, [](int c, int r) { return smooth_hills(c, r); });
     render::Renderer renderer(scene);
     const Heightfield& g = scene.ground;
-    std::printf("| distance | slope of the ray | rays | as built: median, 99.9 % [m] | from the "
-                "corner: median, 99.9 % [m] | allowed (1e-5) [m] |\n"
+    std::printf("| distance | slope of the ray | rays | as built: median, 99.9 %% [m] | from the "
+                "corner: median, 99.9 %% [m] | allowed (1e-5) [m] |\n"
                 "| --- | --- | --- | --- | --- | --- |\n");
     std::mt19937 random(4);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
