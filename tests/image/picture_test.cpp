@@ -1,5 +1,6 @@
 // Whole pictures: the GPU against the double-precision reference, and the shoreline against its
 // curve.
+#include "bench/adversary.hpp"
 #include "dem/import.hpp"
 #include "image/compare.hpp"
 #include "reference/camera.hpp"
@@ -84,6 +85,38 @@ TEST(Picture, RotomaAboveAndBelow) {
     TARN_NEEDS_DATA("rotoma/rotoma_topobathy_32m.tif");
     expect_same_presets(from_data({"rotoma/rotoma_topobathy_32m.tif"}, 313.31), "rotoma",
                         {"overview", "shore", "top", "dive"});
+}
+
+// The exact ways of finding a first hit on real ground and water: all classes of rays.
+TEST(Picture, ExactWalksMissNothingOnRotoma) {
+    TARN_NEEDS_DATA("rotoma/rotoma_topobathy_32m.tif");
+    test_support::context();
+    const scene::Scene scene = from_data({"rotoma/rotoma_topobathy_32m.tif"}, 313.31);
+    render::Renderer renderer(scene);
+    long rays_traced = 0;
+    for (std::size_t k = 0; k < bench::ray_class_names.size(); ++k)
+        for (const bool with_water : {false, true}) {
+            const auto kind = static_cast<bench::RayClass>(k);
+            if (with_water && kind == bench::RayClass::from_below)
+                continue;
+            auto rays = bench::make_rays(scene, kind, 20'000, unsigned(k + 1));
+            const auto rounded = bench::round_rays(scene, rays);
+            for (const scene::WalkMethod& method : scene::walk_methods()) {
+                if (!method.exact)
+                    continue;
+                const std::size_t count = method.walk == scene::Walk::cone_map ? rays.size() : 1000;
+                const auto got = renderer.trace_rays(std::span(rounded).first(count), method.walk,
+                                                     0.0, with_water);
+                const bench::Verdict v = bench::judge_hits(
+                    scene, {rays.begin(), rays.begin() + std::ptrdiff_t(count)}, got, with_water);
+                EXPECT_EQ(v.failures(), 0)
+                    << method.name << ", " << bench::ray_class_names[k] << ": " << v.missed
+                    << " missed, " << v.invented << " invented, " << v.off << " off, "
+                    << v.other_surface << " other surface";
+                rays_traced += v.rays;
+            }
+        }
+    std::printf("%ld rays\n", rays_traced);
 }
 
 TEST(Picture, CraterLakeWhoseBedIsUnknown) {
