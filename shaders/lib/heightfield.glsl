@@ -111,11 +111,16 @@ struct Span {
 bool clip_ray(Field field, Ray ray, float t_max, out Span span) {
     vec2 o = ray.origin.xy, d = ray.direction.xy;
     float oz = ray.origin.z * field.per_m, dz = ray.direction.z * field.per_m;
-    // A ray that never leaves its column or row creeps: 1e-12 cells a metre change no answer, and it is
-    // over the field at once or, for all purposes, never.
-    d = vec2(abs(d.x) < 1e-12 ? 1e-12 : d.x, abs(d.y) < 1e-12 ? 1e-12 : d.y);
-    vec2 inverse = 1.0 / d;
     vec2 low = -ray.base, high = field.cells - ray.base;
+    // A ray that never leaves its column or row must be over the field (on its border, give or take
+    // rounding); it creeps inwards by 1e-12 cells a metre, which changes no answer.
+    bvec2 still = lessThan(abs(d), vec2(1e-12));
+    vec2 within = clamp(o, low, high);
+    if (any(greaterThan(mix(vec2(0.0), abs(o - within), still), vec2(1e-6))))
+        return false;
+    o = mix(o, within, still);
+    d = mix(d, mix(vec2(1e-12), vec2(-1e-12), greaterThan(2.0 * o, low + high)), still);
+    vec2 inverse = 1.0 / d;
     vec2 t_low = (low - o) * inverse, t_high = (high - o) * inverse;
     vec2 t_first = min(t_low, t_high), t_last = max(t_low, t_high);
     float t = max(ray.begin, max(t_first.x, t_first.y));
@@ -177,7 +182,8 @@ Hit hit_at(Field field, Ray ray, Span span, float t, bool water) {
     return Hit(t, water, ivec2(cell + ray.base), clamp(span.o - cell + t * span.d, 0.0, 1.0));
 }
 
-// look_into — what a ray does in a cell, between path lengths t and t_out.
+// look_into — what a ray does in a cell, between path lengths t and t_out, t_out >= t (a ray on a grid line may
+//             stand at the far border of the cell that it is taken to be in).
 //
 //   heights  RG16, ground and water; water 0 = none
 //   cell     from ray.base

@@ -30,6 +30,6 @@ void main() {
     Hit hit;
     float t = 0.0;
     if (trace_field(heights, bounds, field_of(view), ray, 1e9, from_above, hit))
-        t = hit.water ? -hit.t : hit.t;
+        t = max(hit.t, 1e-6) * (hit.water ? -1.0 : 1.0);
     imageStore(distance_image, pixel, vec4(t));
 }

@@ -19,6 +19,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <unistd.h>
 
 namespace tarn::app {
 
@@ -35,7 +36,7 @@ struct Words {
 
 /// Written beside and renamed, so that no half file is left.
 void write_file(const std::string& path, const std::string& content) {
-    const std::string partial = path + ".partial";
+    const std::string partial = path + text(".partial-", ::getpid());
     std::ofstream out(partial, std::ios::binary);
     out << content;
     out.close();
@@ -57,6 +58,10 @@ json measure(const Words& words) {
     if (std::sscanf(words.size.c_str(), "%dx%d%c", &size.width_px, &size.height_px, &extra) != 2)
         throw Error("--size '" + words.size + "' is not understood",
                     "write WIDTHxHEIGHT, like 800x600");
+    scene::RenderSettings range;
+    range.width_px = size.width_px;
+    range.height_px = size.height_px;
+    range.validate(); // before a scene is made
     options.sizes = {size};
     options.runs = words.runs;
     options.judged_rays = words.rays;
@@ -70,7 +75,8 @@ json measure(const Words& words) {
     } else {
         scene = scene_files::load(words.scene);
         scene.safety_radii = scene_files::load_safety_radii(words.scene, scene);
-        name = std::filesystem::path(words.scene).lexically_normal().filename().string();
+        std::filesystem::path folder = std::filesystem::path(words.scene).lexically_normal();
+        name = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
         for (const scene::NamedCamera& camera : scene.cameras)
             views.push_back({camera.name, camera.camera});
     }
@@ -107,6 +113,8 @@ json read_results(const std::string& path) {
             if (!stored.contains(key))
                 throw Error("--from " + path + ": has no '" + key + "'",
                             "name a file that --json wrote");
+        if (!stored.at("results").is_array() || stored.at("results").empty())
+            throw Error("--from " + path + ": holds no results", "name a file that --json wrote");
         return stored;
     } catch (const json::exception& error) {
         throw Error("--from " + path + ": is not understood (" + error.what() + ")",
@@ -115,13 +123,13 @@ json read_results(const std::string& path) {
 }
 
 void print_table(const json& all) {
-    std::cout << "device " << all["device"].get<std::string>() << ", commit "
-              << all["commit"].get<std::string>() << "\n";
+    std::cout << "device " << all.at("device").get<std::string>() << ", commit "
+              << all.at("commit").get<std::string>() << "\n";
     std::string last;
-    for (const json& r : all["results"]) {
+    for (const json& r : all.at("results")) {
         const std::string head =
-            text(r["scene"].get<std::string>(), ", ", r["view"].get<std::string>(), ", ",
-                 r["width"], "x", r["height"]);
+            text(r.at("scene").get<std::string>(), ", ", r.at("view").get<std::string>(), ", ",
+                 r.at("width"), "x", r.at("height"));
         if (head != last)
             std::cout << head
                       << "\n  method            setting    time [ms]   M rays/s     missed      "
@@ -129,42 +137,43 @@ void print_table(const json& all) {
         last = head;
         char line[200];
         std::snprintf(line, sizeof line, "  %-16s %8g  %11.3f  %9.2f  %9.2e  %9.2e  %11.2e\n",
-                      r["method"].get<std::string>().c_str(), r["settings"]["steps"].get<double>(),
-                      r["time_ms"].get<double>(), 1e-6 * r["rays_per_s"].get<double>(),
-                      r["missed_rate"].get<double>(), r["wrong_rate"].get<double>(),
-                      r["mean_error"].get<double>());
+                      r.at("method").get<std::string>().c_str(),
+                      r.at("settings").at("steps").get<double>(), r.at("time_ms").get<double>(),
+                      1e-6 * r.at("rays_per_s").get<double>(), r.at("missed_rate").get<double>(),
+                      r.at("wrong_rate").get<double>(), r.at("mean_error").get<double>());
         std::cout << line;
     }
 }
 
-/// One panel for each field and view; where there are too many, those of the field in the middle.
+/// One panel for each field, view and size: the first six.
 TradePlot trades_of(const json& all) {
     TradePlot plot;
     plot.title = "First hits: time against error";
-    plot.device = all["device"].get<std::string>();
-    for (const json& r : all["results"]) {
+    plot.device = all.at("device").get<std::string>();
+    for (const json& r : all.at("results")) {
         const std::string title =
-            text(r["scene"].get<std::string>(), ", ", r["view"].get<std::string>(), ", ",
-                 r["width"], "×", r["height"]);
+            text(r.at("scene").get<std::string>(), ", ", r.at("view").get<std::string>(), ", ",
+                 r.at("width"), "×", r.at("height"));
         auto panel = std::find_if(plot.panels.begin(), plot.panels.end(),
                                   [&](const auto& p) { return p.title == title; });
         if (panel == plot.panels.end()) {
             if (plot.panels.size() == 6)
                 continue;
-            plot.panels.push_back({title, {}, r["hits"].get<double>()});
+            plot.panels.push_back({title, {}, r.at("hits").get<double>()});
             panel = plot.panels.end() - 1;
         }
-        const std::string name = r["method"].get<std::string>();
+        const std::string name = r.at("method").get<std::string>();
         auto method = std::find_if(panel->methods.begin(), panel->methods.end(),
                                    [&](const auto& m) { return m.name == name; });
         if (method == panel->methods.end()) {
             panel->methods.push_back({name, {}});
             method = panel->methods.end() - 1;
         }
-        const double steps = r["settings"]["steps"].get<double>();
-        method->points.push_back({r["time_ms"].get<double>(),
-                                  r["missed_rate"].get<double>() + r["wrong_rate"].get<double>(),
-                                  steps > 0 ? text(steps) : std::string()});
+        const double steps = r.at("settings").at("steps").get<double>();
+        method->points.push_back(
+            {r.at("time_ms").get<double>(),
+             r.at("missed_rate").get<double>() + r.at("wrong_rate").get<double>(),
+             steps > 0 ? text(steps) : std::string()});
     }
     return plot;
 }
@@ -260,6 +269,15 @@ void print_failures(const Words& words) {
 int run_bench(const Words& words) {
     if (!words.intersection)
         throw Error("nothing to measure was named", "add --intersection");
+    // Whatever cannot be written is told before minutes of work.
+    for (const std::string& output :
+         {words.json_file, words.chart, words.pictures.empty() ? "" : words.pictures + "/x"}) {
+        const auto folder = std::filesystem::path(output).parent_path();
+        if (!folder.empty() && !std::filesystem::is_directory(folder))
+            throw Error(folder.string() + ": no such folder", "create it first");
+    }
+    if (!words.chart.empty())
+        check_plot(words.chart);
     if (words.failures) {
         print_failures(words);
         return 0;
@@ -272,7 +290,8 @@ int run_bench(const Words& words) {
         if (!words.chart.empty())
             draw_trades(trades_of(all), words.chart);
     } catch (const json::exception& error) {
-        throw Error("--from " + words.from + ": is not understood (" + error.what() + ")",
+        throw Error((words.from.empty() ? "the results" : "--from " + words.from) +
+                        ": are not understood (" + error.what() + ")",
                     "name a file that --json wrote");
     }
     return 0;
@@ -283,12 +302,18 @@ int run_bench(const Words& words) {
 void add_bench(CLI::App& app, Run& run) {
     auto words = std::make_shared<Words>();
     CLI::App* c = app.add_subcommand("bench", "speed against accuracy: table, JSON, chart");
-    c->add_option("SCENE", words->scene, "scene folder; without it a synthetic mountain lake");
+    CLI::Option* scene =
+        c->add_option("SCENE", words->scene, "scene folder; without it a synthetic mountain lake");
     c->add_flag("--intersection", words->intersection, "ways of finding a ray's first hit");
     c->add_option("--synthetic", words->synthetic, "nodes a side of the synthetic lake")
         ->check(CLI::Range(17, 16384))
         ->capture_default_str();
-    c->add_option("--methods", words->methods, "only these, comma between")->delimiter(',');
+    std::vector<std::string> names;
+    for (const scene::WalkMethod& method : scene::walk_methods())
+        names.emplace_back(method.name);
+    c->add_option("--methods", words->methods, "only these, comma between")
+        ->delimiter(',')
+        ->check(CLI::IsMember(names));
     c->add_option("--views", words->views,
                   "only these: the scene's cameras, or high, grazing, shore, below")
         ->delimiter(',');
@@ -300,13 +325,19 @@ void add_bench(CLI::App& app, Run& run) {
                   "judged against the double-precision walk, a picture or class")
         ->check(CLI::Range(100, 10'000'000))
         ->capture_default_str();
-    c->add_flag("--failures", words->failures,
-                "instead: a table of failures over fields and rays made to break methods");
+    CLI::Option* failures =
+        c->add_flag("--failures", words->failures,
+                    "instead: a table of failures over fields and rays made to break methods");
     c->add_option("--pictures", words->pictures,
-                  "with --failures: a folder for a picture of each method's worst field");
-    c->add_option("--json", words->json_file, "write the results");
-    c->add_option("--chart", words->chart, "draw time against error (.svg, .png, .pdf)");
-    c->add_option("--from", words->from, "results of an earlier --json instead of measuring");
+                  "with --failures: a folder for a picture of each method's worst field")
+        ->needs(failures);
+    CLI::Option* json_file = c->add_option("--json", words->json_file, "write the results");
+    CLI::Option* chart =
+        c->add_option("--chart", words->chart, "draw time against error (.svg, .png, .pdf)");
+    CLI::Option* from =
+        c->add_option("--from", words->from, "results of an earlier --json instead of measuring");
+    failures->excludes(json_file)->excludes(chart)->excludes(from)->excludes(scene);
+    from->excludes(scene);
     c->footer("Examples:\n"
               "  tarn bench --intersection --chart walks.svg --json walks.json\n"
               "  tarn bench rotoma --intersection --methods cone-map,uniform-steps --views shore\n"

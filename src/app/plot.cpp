@@ -28,10 +28,14 @@ std::string quoted(const std::string& words) {
     return out + "'";
 }
 
+void require_gnuplot() {
+    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
+        throw Error("gnuplot is not installed", "install gnuplot-nox, or leave the plot out");
+}
+
 /// Runs gnuplot on a script; its last words on stderr if it fails.
 void run_gnuplot(const std::string& script) {
-    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
-        throw Error("gnuplot is not installed", "install gnuplot-nox, or leave out --plot");
+    require_gnuplot();
     FILE* pipe = ::popen("gnuplot >/dev/null 2>&1", "w");
     if (!pipe)
         throw Error("gnuplot cannot be started");
@@ -94,6 +98,11 @@ void draw(const Sheet& sheet, const std::string& script, const fs::path& path) {
 }
 
 } // namespace
+
+void check_plot(const fs::path& path) {
+    sheet_for(path, 100, 100);
+    require_gnuplot();
+}
 
 void draw_stages(const StagePlot& plot, const fs::path& path) {
     const Sheet sheet = sheet_for(path, 1100, 750);

@@ -17,6 +17,10 @@ struct StagePlot {
     double spill_level_m = 0.0; ///< drawn as a line if it lies within the plot
 };
 
+/// Can a plot be drawn to that name? For asking before long work.
+/// @throws tarn::Error  if the ending is none of .png, .svg and .pdf, or gnuplot is not there
+void check_plot(const std::filesystem::path& path);
+
 /// @param path  .png, .svg or .pdf
 /// @throws tarn::Error  if gnuplot is not there or fails, or the file cannot be written
 void draw_stages(const StagePlot& plot, const std::filesystem::path& path);

@@ -109,9 +109,9 @@ std::vector<TestRay> make_rays(const scene::Scene& scene, RayClass kind, int cou
             break;
         case RayClass::along_line:
             if (unit(random) < 0.5)
-                from.y = to.y = g.y_m(std::floor(g.row(b.y)));
+                from.y = to.y = g.y_m(std::round(g.row(b.y))); // the borders, too
             else
-                from.x = to.x = g.x_m(std::floor(g.col(b.x)));
+                from.x = to.x = g.x_m(std::round(g.col(b.x)));
             break;
         case RayClass::diagonal: {
             const glm::dvec2 n = node_near(b);

@@ -96,8 +96,6 @@ void judge(const Truth& truth, const std::vector<float>& distances, Intersection
         }
         const double error = std::abs(got - right);
         errors.push_back(error / std::max(right, 1e-9));
-        // A ray that strikes at a slant is off along itself by a footprint over the sine: half a
-        // footprint is meant across the ray, so a hundredth of the distance is wrong in any case.
         wrong += error > std::max(0.5 * truth.pixel_rad * right, 1e-9);
     }
     std::sort(errors.begin(), errors.end());
@@ -112,6 +110,19 @@ void judge(const Truth& truth, const std::vector<float>& distances, Intersection
         result.mean_error += e / double(errors.size());
     result.p95_error = errors[errors.size() * 95 / 100];
     result.p99_error = errors[errors.size() * 99 / 100];
+}
+
+/// A JSON string: names of folders and cameras may hold anything.
+std::string quoted(const std::string& words) {
+    std::string out = "\"";
+    for (const char c : words) {
+        if (c == '"' || c == '\\')
+            out += '\\';
+        out += static_cast<unsigned char>(c) < 32    ? ' '
+               : static_cast<unsigned char>(c) < 127 ? c
+                                                     : '?';
+    }
+    return out + "\"";
 }
 
 } // namespace
@@ -186,11 +197,12 @@ std::vector<IntersectionResult> compare_methods(const scene::Scene& scene, const
 
 void write_json(std::ostream& out, const std::string& device, const std::string& commit,
                 const std::vector<IntersectionResult>& results) {
-    out << "{\"device\": \"" << device << "\", \"commit\": \"" << commit << "\", \"results\": [";
+    out << "{\"device\": " << quoted(device) << ", \"commit\": " << quoted(commit)
+        << ", \"results\": [";
     const char* comma = "\n";
     for (const IntersectionResult& r : results) {
-        out << comma << "{\"scene\": \"" << r.scene << "\", \"view\": \"" << r.view
-            << "\", \"method\": \"" << r.method << "\", \"source\": \"" << r.source
+        out << comma << "{\"scene\": " << quoted(r.scene) << ", \"view\": " << quoted(r.view)
+            << ", \"method\": \"" << r.method << "\", \"source\": \"" << r.source
             << "\", \"settings\": {\"steps\": " << r.setting
             << "}, \"exact\": " << (r.exact ? "true" : "false") << ", \"nodes\": " << r.nodes
             << ", \"width\": " << r.width_px << ", \"height\": " << r.height_px

@@ -77,12 +77,39 @@ Block joined(const Block& a, const Block& b) {
             std::max(a.south_high, b.south_high)};
 }
 
-/// Level k: blocks of 2^(k+1) cells a side.
+/// Level k: blocks of block_side(k) cells a side.
+constexpr int level_count = 5;
+constexpr int block_side(int k) { return 4 << k; }
+
+/// Bounds over a block of the finest level, straight from its nodes.
+Block finest_block(const Codes& codes, int c0, int r0, int cells_across, int cells_down) {
+    const int c1 = std::min(c0 + block_side(0), cells_across),
+              r1 = std::min(r0 + block_side(0), cells_down);
+    Block block{0, 65535, -65535, 65535, -65535};
+    for (int r = r0; r <= r1; ++r) {
+        const Code* row = codes.values + std::size_t(r) * std::size_t(codes.cols);
+        for (int c = c0; c <= c1; ++c) {
+            block.highest = std::max(block.highest, int(row[c]));
+            if (c < c1) {
+                const int east = int(row[c + 1]) - int(row[c]);
+                block.east_low = std::min(block.east_low, east);
+                block.east_high = std::max(block.east_high, east);
+            }
+            if (r < r1) {
+                const int south = int(row[c + codes.cols]) - int(row[c]);
+                block.south_low = std::min(block.south_low, south);
+                block.south_high = std::max(block.south_high, south);
+            }
+        }
+    }
+    return block;
+}
+
 std::vector<Level> pyramid(const Codes& codes, int cells_across, int cells_down, int threads) {
     std::vector<Level> levels;
-    for (int k = 0; k < 6; ++k) {
+    for (int k = 0; k < level_count; ++k) {
         Level level;
-        const int side = 2 << k;
+        const int side = block_side(k);
         level.cols = (cells_across + side - 1) / side;
         level.rows = (cells_down + side - 1) / side;
         level.blocks.resize(std::size_t(level.cols) * std::size_t(level.rows));
@@ -90,28 +117,20 @@ std::vector<Level> pyramid(const Codes& codes, int cells_across, int cells_down,
         share_out(level.rows, threads, [&](int first, int last) {
             for (int r = first; r < last; ++r)
                 for (int c = 0; c < level.cols; ++c) {
-                    bool any = false;
-                    Block sum;
-                    const auto add = [&](const Block& b) {
-                        sum = any ? joined(sum, b) : b;
-                        any = true;
+                    Block& block =
+                        level.blocks[std::size_t(r) * std::size_t(level.cols) + std::size_t(c)];
+                    if (!finer) {
+                        block = finest_block(codes, c * side, r * side, cells_across, cells_down);
+                        continue;
+                    }
+                    const auto part = [&](int cc, int rr) {
+                        return finer
+                            ->blocks[std::size_t(rr) * std::size_t(finer->cols) + std::size_t(cc)];
                     };
-                    for (int j = 0; j < 2; ++j)
-                        for (int i = 0; i < 2; ++i) {
-                            const int cc = 2 * c + i, rr = 2 * r + j;
-                            if (finer) {
-                                if (cc < finer->cols && rr < finer->rows)
-                                    add(finer->blocks[std::size_t(rr) * std::size_t(finer->cols) +
-                                                      std::size_t(cc)]);
-                            } else if (cc < cells_across && rr < cells_down) {
-                                const Corners d = codes.cell(cc, rr);
-                                const int en = d.ne - d.nw, es = d.se - d.sw, sw = d.sw - d.nw,
-                                          se = d.se - d.ne;
-                                add({d.highest(), std::min(en, es), std::max(en, es),
-                                     std::min(sw, se), std::max(sw, se)});
-                            }
-                        }
-                    level.blocks[std::size_t(r) * std::size_t(level.cols) + std::size_t(c)] = sum;
+                    block = part(2 * c, 2 * r);
+                    for (int q = 1; q < 4; ++q)
+                        if (2 * c + q % 2 < finer->cols && 2 * r + q / 2 < finer->rows)
+                            block = joined(block, part(2 * c + q % 2, 2 * r + q / 2));
                 }
         });
         levels.push_back(std::move(level));
@@ -150,7 +169,7 @@ Grid<std::uint8_t> safety_radii(const Heightfield& heights, int threads) {
     // bounds only get larger by that.
     const auto square_is_safe = [&](int c, int r, int tile, int highest, int n, int k) {
         const Level& level = levels[std::size_t(k)];
-        const int side = 2 << k;
+        const int side = block_side(k);
         const int c1 = std::min(c + tile, across), r1 = std::min(r + tile, down); // nodes
         for (int br = std::max(r - n, 0) / side; br <= std::min(r1 - 1 + n, down - 1) / side; ++br)
             for (int bc = std::max(c - n, 0) / side; bc <= std::min(c1 - 1 + n, across - 1) / side;
@@ -174,7 +193,7 @@ Grid<std::uint8_t> safety_radii(const Heightfield& heights, int threads) {
         int n = 0;
         for (int k = 0; k < 6; ++k) {
             const int wanted = std::min(8 << k, 255);
-            if (!square_is_safe(c, r, tile, highest, wanted - 1, k))
+            if (!square_is_safe(c, r, tile, highest, wanted - 1, std::max(0, k - 1)))
                 break;
             n = wanted;
         }

@@ -137,8 +137,11 @@ void Renderer::prepare(const scene::View& view) {
     const double pixel_rad = 2.0 * half / settings.height_px;
     const glm::dvec3& p = camera.position;
     const double col = ground.col(p.x), row = ground.row(p.y);
-    if (!(std::abs(col) < 1e9 && std::abs(row) < 1e9 && std::abs(p.z) < 1e9))
-        throw Error("the camera is too far away from the scene", "check its position");
+    // Walks count cells in float from beside the camera: up to 2^22 of them they are whole numbers.
+    if (!(std::abs(col) < 4e6 && std::abs(row) < 4e6 && std::abs(p.z) < 4e6 * ground.spacing_m))
+        throw Error(text("the camera is more than four million cells (",
+                         std::lround(4e3 * ground.spacing_m), " km) away from the scene"),
+                    "check its position");
     block_.base.x = float(std::floor(col)); // a float from 2^24 on holds a node near it
     block_.base.y = float(std::floor(row));
     block_.camera = {float(col - double(block_.base.x)), float(row - double(block_.base.y)),

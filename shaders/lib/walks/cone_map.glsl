@@ -3,9 +3,9 @@
 // Source   cone step mapping (Dummer 2006) with a plain disc around each cone's foot, made conservative for the bilinear surface by measuring
 //          distance as columns plus rows (src/core/cone_map.hpp says why that suffices), and ended by
 //          the exact patch. The union of the seed's safety distances with exactness.
-// Exact    Cones are only left where the next step would be shorter than a cell; there the cell is
-//          solved and left through its border, in integers. No step is shorter than that and no
-//          epsilon is needed: at most two steps for each column and row crossed.
+// Exact    Cones are left where the next step would be shorter than a quarter cell; there the cell is
+//          solved and left through its border, counted in whole cells. So no epsilon is needed, and
+//          there are at most eight steps for each column and row.
 // Fails    at float32's limits only: docs/limits.md. Slow where a ray skims rough ground for long.
 // Bounds   RG16, a texel a block, of the ground, or of the higher of ground and water: its top; and slope, free
 //          distance and the mark of water in one code (src/core/cone_map.hpp).
@@ -102,11 +102,11 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
             float by_plain = min(gap * inverse_sink, (cone_free(cone.y) - aside) * inverse_pace);
             float stride = max(by_cone, by_plain);
 #ifdef TARN_CONES_A_LOOK
-            look = stride * pace < least_step || --steps < 0;
+            look = stride * pace < least_step || t + stride == t || --steps < 0;
             if (look)
                 break;
 #else
-            if (stride * pace < least_step || --steps < 0)
+            if (stride * pace < least_step || t + stride == t || --steps < 0)
                 break;
 #endif
             t += stride;
@@ -122,7 +122,7 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
         bool wet = with_water && cone_wet(cone.y);
         for (int k = 0; k < TARN_LOOKS; ++k) {
             vec2 t_border = borders(span, cell);
-            t_out = min(min(t_border.x, t_border.y), span.t_end);
+            t_out = max(t, min(min(t_border.x, t_border.y), span.t_end));
             m = look_into(heights, field, ray, span, cell, t, t_out, wet);
             if (m.met)
                 break;

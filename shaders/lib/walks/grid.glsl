@@ -13,7 +13,7 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
     vec2 cell = cell_at(span, t);
     for (int i = int(field.cells.x + field.cells.y) + 2; i > 0; --i) {
         vec2 t_border = borders(span, cell);
-        float t_out = min(min(t_border.x, t_border.y), span.t_end);
+        float t_out = max(t, min(min(t_border.x, t_border.y), span.t_end));
         Meeting m = look_into(heights, field, ray, span, cell, t, t_out, with_water);
         if (m.met) {
             hit = hit_of(ray, span, m, cell, t, t_out);

@@ -22,7 +22,7 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
     bool near_water = false; // is there any water in the block of 4 x 4 cells
     for (int i = 8 * (cells.x + cells.y) + 256; i > 0; --i) {
         vec2 t_border = (vec2(((block + ahead) << (2 * level)) - base) - span.o) * span.inverse;
-        float t_out = min(min(t_border.x, t_border.y), span.t_end);
+        float t_out = max(t, min(min(t_border.x, t_border.y), span.t_end));
         if (level > 0) {
             float lowest = span.oz + (span.dz < 0.0 ? t_out : t) * span.dz;
             vec2 highest = texelFetch(bounds, block, 2 * (level - 1)).rg * per_m;

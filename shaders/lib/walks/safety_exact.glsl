@@ -27,7 +27,7 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
             vec4 h = textureGather(heights, (cell + ray.base + 1.0) * field.texel, 0);
             float highest = max(max(h.x, h.y), max(h.z, h.w)) + span.slack;
             vec2 t_border = (cell + mix(vec2(1.0 - radius), vec2(radius), span.ahead) - span.o) * span.inverse;
-            float t_out = min(min(t_border.x, t_border.y), span.t_end);
+            float t_out = max(t, min(min(t_border.x, t_border.y), span.t_end));
             float z = span.oz + t * span.dz, z_out = span.oz + t_out * span.dz;
             if (z > highest && (!with_water || min(z, z_out) > field.water_top + span.slack)) {
                 if (z_out > ground_below(heights, field, ray, span, t_out) + span.slack) {
@@ -54,7 +54,7 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
             }
         }
         vec2 t_border = borders(span, cell);
-        float t_out = min(min(t_border.x, t_border.y), span.t_end);
+        float t_out = max(t, min(min(t_border.x, t_border.y), span.t_end));
         Meeting m = look_into(heights, field, ray, span, cell, t, t_out, with_water);
         if (m.met) {
             hit = hit_of(ray, span, m, cell, t, t_out);

@@ -24,7 +24,7 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
     for (int i = int(field.cells.x + field.cells.y) + 2; i > 0; --i) {
         float radius = max(floor(255.0 * texelFetch(bounds, ivec2(cell + ray.base), 0).r + 0.5), 1.0);
         vec2 t_border = (cell + mix(vec2(1.0 - radius), vec2(radius), span.ahead) - span.o) * span.inverse;
-        float t_out = min(min(t_border.x, t_border.y), span.t_end);
+        float t_out = max(t, min(min(t_border.x, t_border.y), span.t_end));
         if (depth_below(heights, field, ray, span, t_out, with_water, at_water) >= 0.0) {
             t = bisect(heights, field, ray, span, t, t_out, with_water, int(field.setting), at_water);
             hit = hit_at(field, ray, span, t, at_water);
