@@ -93,6 +93,7 @@ int run_import(Words& words) {
         dem::write_ortho(folder.path() / files.ortho, *scene.ortho, scene.frame);
     }
     files.safety_ground = "safety_ground.tif";
+    files.safety_sum = ground_sum(scene.ground);
     dem::write_safety_radii(folder.path() / files.safety_ground, radii.get(), scene.ground,
                             scene.frame);
     image::write_png(folder.path() / "preview.png", draw_preview(scene), {});

@@ -256,6 +256,19 @@ Grid<std::uint8_t> safety_radii(const Heightfield& heights, int threads) {
     return out;
 }
 
+std::string ground_sum(const Heightfield& heights) {
+    std::uint64_t sum = 14695981039346656037ull;
+    const auto add = [&sum](std::uint64_t value) { sum = (sum ^ value) * 1099511628211ull; };
+    add(static_cast<std::uint64_t>(heights.size().cols));
+    add(static_cast<std::uint64_t>(heights.size().rows));
+    for (const Code code : heights.codes.values)
+        add(code);
+    std::string out(16, '0');
+    for (int k = 0; k < 16; ++k)
+        out[std::size_t(k)] = "0123456789abcdef"[(sum >> (60 - 4 * k)) & 15];
+    return out;
+}
+
 int water_safety_radius(double amplitude_m, double shortest_wave_m, double spacing_m,
                         double quantum_m) {
     if (amplitude_m <= 0.0)

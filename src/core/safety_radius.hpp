@@ -20,6 +20,7 @@
 #include "core/heightfield.hpp"
 
 #include <cstdint>
+#include <string>
 
 namespace tarn {
 
@@ -28,6 +29,10 @@ namespace tarn {
 /// @param heights  at least 2 x 2 nodes; only its codes count
 /// @param threads  0: all cores
 Grid<std::uint8_t> safety_radii(const Heightfield& heights, int threads = 0);
+
+/// Tells one ground from another, sixteen hexadecimal digits: stored radii are used for the ground
+/// they were made for only. (FNV-1a over size and codes; no defence against intent.)
+std::string ground_sum(const Heightfield& heights);
 
 /// For water that moves: the value that holds for every cell whatever the waves' phase.
 ///

@@ -1,6 +1,7 @@
 #include "scene_files/scene_folder.hpp"
 
 #include "core/error.hpp"
+#include "core/safety_radius.hpp"
 #include "core/text.hpp"
 #include "image/files.hpp"
 #include "scene_files/scene_json.hpp"
@@ -149,8 +150,8 @@ std::optional<Grid<std::uint8_t>> load_safety_radii(const fs::path& folder,
     const std::string source{std::istreambuf_iterator<char>(in), {}};
     FileNames files;
     from_json(source, files);
-    if (files.safety_ground.empty())
-        return {};
+    if (files.safety_ground.empty() || files.safety_sum != ground_sum(scene.ground))
+        return {}; // of another ground: made anew by whoever needs them
     Grid<std::uint8_t> radii = image::read_bytes(member(folder, files.safety_ground));
     const GridSize cells{scene.ground.size().cols - 1, scene.ground.size().rows - 1};
     if (!(radii.size == cells))

@@ -15,8 +15,9 @@ scene::Scene load(const std::filesystem::path& folder);
 /// @throws as load()
 Grid<float> load_heights(const std::filesystem::path& folder, const scene::Scene& scene);
 
-/// The ground's safety radii, where the folder holds them (scenes of older imports do not). Only
-/// some methods of intersection need them, so load() leaves them alone.
+/// The ground's safety radii, where the folder holds them for this very ground (scenes of older
+/// imports do not; edited ones hold those of another). Only some methods of intersection need them,
+/// so load() leaves them alone.
 /// @throws as load()
 std::optional<Grid<std::uint8_t>> load_safety_radii(const std::filesystem::path& folder,
                                                     const scene::Scene& scene);

@@ -350,7 +350,7 @@ std::string to_json(const scene::Scene& scene, const FileNames& files) {
          {{"tree_line_m", scene.look.tree_line_m}, {"snow_line_m", scene.look.snow_line_m}}},
         {"cameras", cameras}};
     if (!files.safety_ground.empty())
-        out["safety_ground"] = {{"file", files.safety_ground}};
+        out["safety_ground"] = {{"file", files.safety_ground}, {"ground_sum", files.safety_sum}};
     if (scene.ortho)
         out["ortho"] = {{"file", files.ortho},
                         {"width_px", scene.ortho->picture.width_px},
@@ -387,8 +387,10 @@ scene::Scene from_json(const std::string& source, FileNames& files) {
     files.ground = root["ground"]["file"].file_name();
     files.water = root["water"]["file"].file_name();
     files.heights = root["heights"]["file"].file_name();
-    if (root.has("safety_ground"))
+    if (root.has("safety_ground")) {
         files.safety_ground = root["safety_ground"]["file"].file_name();
+        files.safety_sum = root["safety_ground"]["ground_sum"].string();
+    }
     const Field lakes = root["lakes"];
     for (std::size_t i = 0, n = lakes.array_size(1, 100'000); i < n; ++i)
         scene.lakes.push_back(read_lake(lakes.at(i), size));

@@ -13,6 +13,7 @@ inline constexpr int schema_version = 2;
 struct FileNames {
     std::string ground = "ground.tif", water = "water.tif", heights = "heights.tif", ortho,
                 safety_ground;
+    std::string safety_sum; ///< core/safety_radius.hpp: of the ground that it was made for
 };
 
 /// @return the text of scene.json, two-space indented, ending with a newline

@@ -2,6 +2,7 @@
 #include "dem/gdal_door.hpp"
 #include "dem/write.hpp"
 #include "image/files.hpp"
+#include "scene_files/scene_folder.hpp"
 #include "support/files.hpp"
 
 #include <cmath>
@@ -311,6 +312,101 @@ TEST(Render, WithoutAGpuItSaysSoInOneLine) {
     EXPECT_EQ(shaders.code, 1);
     EXPECT_NE(shaders.err.find("shaders not found in /nonexistent"), std::string::npos)
         << shaders.err;
+}
+
+TEST(Bench, MeasuresWritesAndDrawsAndReadsItsOwnResults) {
+    const TempFolder folder;
+    const std::string json_file = (folder / "walks.json").string(),
+                      chart = (folder / "walks.svg").string();
+    const Outcome o = run(
+        "tarn bench " + shared().scene +
+        "/ --intersection --methods cone-map,uniform-steps --views overview --size 80x60 --runs 1 "
+        "--rays 500 --json " +
+        json_file + " --chart " + chart);
+    ASSERT_EQ(o.code, 0) << o.err;
+    std::ifstream in(json_file);
+    const auto all = nlohmann::json::parse(in);
+    EXPECT_FALSE(all.at("device").get<std::string>().empty());
+    EXPECT_FALSE(all.at("commit").get<std::string>().empty());
+    ASSERT_EQ(all.at("results").size(), 6u); // one exact method, one with five settings
+    for (const auto& r : all.at("results")) {
+        EXPECT_EQ(r.at("scene"), "bowl");
+        EXPECT_GT(r.at("time_ms").get<double>(), 0.0);
+        EXPECT_GT(r.at("hits").get<int>(), 100);
+        if (r.at("exact").get<bool>())
+            EXPECT_EQ(r.at("missed_rate").get<double>() + r.at("wrong_rate").get<double>(), 0.0);
+    }
+    EXPECT_TRUE(fs::exists(chart));
+    const Outcome again = run("tarn bench --intersection --from " + json_file);
+    EXPECT_EQ(again.code, 0) << again.err;
+    EXPECT_EQ(again.out, o.out);
+}
+
+TEST(Bench, BadInputGetsOneClearLineBeforeAnyWork) {
+    const TempFolder folder;
+    const auto with = [&](const std::string& content) {
+        std::ofstream(folder / "bad.json") << content;
+        return "tarn bench --intersection --from " + (folder / "bad.json").string();
+    };
+    expect_one_line(with("{"), 1, "is not understood");
+    expect_one_line(with("[]"), 1, "has no 'device'");
+    expect_one_line(with(R"({"device":"d","commit":"c","results":[]})"), 1, "holds no results");
+    {
+        const Outcome o = run(with(R"({"device":"d","commit":"c","results":[{}]})"));
+        EXPECT_EQ(o.code, 1);
+        EXPECT_NE(o.err.find("not understood"), std::string::npos) << o.err;
+    }
+    expect_one_line("tarn bench", 1, "add --intersection");
+    expect_one_line("tarn bench --intersection --size 9x", 1, "--size '9x' is not understood");
+    expect_one_line("tarn bench --intersection --size 99999x9", 1, "width is 99999");
+    expect_one_line("tarn bench --intersection --views up", 1, "no view is called 'up'");
+    expect_one_line("tarn bench --intersection --json /nowhere/x.json", 1,
+                    "/nowhere: no such folder");
+    expect_one_line("tarn bench --intersection --chart x.gif", 1, "is no kind of plot");
+    expect_one_line("tarn bench --intersection --methods conemap", 2, "--methods");
+    expect_one_line("tarn bench --intersection --failures --json x", 2, "--json");
+    expect_one_line("tarn render " + shared().scene + " --intersection cones -o x.png", 2,
+                    "--intersection");
+    expect_one_line("tarn render " + shared().scene + " --intersection-setting -3 -o x.png", 1,
+                    "intersection setting");
+}
+
+// The radii in a scene folder belong to its ground: if that was edited, they are made anew.
+TEST(SceneFolder, SafetyRadiiAreUsedOnlyForTheGroundTheyWereMadeFor) {
+    const TempFolder folder;
+    const std::string scene = (folder / "copy").string();
+    fs::copy(shared().scene, scene);
+    const auto picture = [&](const std::string& method) {
+        const std::string file = (folder / (method + ".exr")).string();
+        const Outcome o =
+            run("tarn render " + scene + " --size 120x80 --samples 1 --intersection " + method +
+                " -o " + file);
+        EXPECT_EQ(o.code, 0) << o.err;
+        return image::read_exr(file).distance_m;
+    };
+    const auto differ = [&] {
+        const auto a = picture("grid"), b = picture("safety-exact");
+        int n = 0;
+        for (std::size_t i = 0; i < a.size(); ++i)
+            n += std::isfinite(a[i]) != std::isfinite(b[i]) || std::abs(a[i] - b[i]) > 0.01f;
+        return n;
+    };
+    EXPECT_TRUE(fs::exists(scene + "/safety_ground.tif"));
+    EXPECT_EQ(differ(), 0);
+    // Radii of a plain: believed as long as they are said to belong to this ground, and rays step
+    // over it ...
+    const scene::Scene loaded = scene_files::load(scene);
+    dem::write_safety_radii(
+        scene + "/safety_ground.tif",
+        Grid<std::uint8_t>({loaded.ground.size().cols - 1, loaded.ground.size().rows - 1}, 255),
+        loaded.ground, loaded.frame);
+    EXPECT_GT(differ(), 100);
+    // ... and made anew as soon as they are not.
+    std::ifstream in(scene + "/scene.json");
+    auto json = nlohmann::json::parse(in);
+    json.at("safety_ground").at("ground_sum") = "0";
+    std::ofstream(scene + "/scene.json") << json.dump(2);
+    EXPECT_EQ(differ(), 0);
 }
 
 TEST(Doctor, SaysWhatThereIs) {
