@@ -374,8 +374,17 @@ TEST(Bench, BadInputGetsOneClearLineBeforeAnyWork) {
 // The radii in a scene folder belong to its ground: if that was edited, they are made anew.
 TEST(SceneFolder, SafetyRadiiAreUsedOnlyForTheGroundTheyWereMadeFor) {
     const TempFolder folder;
-    const std::string scene = (folder / "copy").string();
-    fs::copy(shared().scene, scene);
+    const std::string scene = (folder / "ridges").string(), dem = (folder / "ridges.tif").string();
+    Grid<float> z({80, 80});
+    for (int r = 0; r < 80; ++r)
+        for (int c = 0; c < 80; ++c)
+            z[{c, r}] = std::hypot(c - 40, r - 40) < 9 ? 0.0f
+                        : c % 6 == 0                   ? 40.0f
+                                                       : 5.0f + 0.01f * float(r);
+    const double transform[6] = {500000, 10, 0, 5000000, 0, -10};
+    dem::write_elevations(dem, z, "EPSG:32633", transform, "ridges");
+    const Outcome made = run("tarn import " + dem + " --level 3 -o " + scene);
+    ASSERT_EQ(made.code, 0) << made.err;
     const auto picture = [&](const std::string& method) {
         const std::string file = (folder / (method + ".exr")).string();
         const Outcome o =
