@@ -19,7 +19,6 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <unistd.h>
 
 namespace tarn::app {
 
@@ -33,22 +32,6 @@ struct Words {
     int synthetic = 1024, runs = 7, rays = 20'000;
     bool intersection = false, failures = false;
 };
-
-/// Written beside and renamed, so that no half file is left.
-void write_file(const std::string& path, const std::string& content) {
-    const std::string partial = path + text(".partial-", ::getpid());
-    std::ofstream out(partial, std::ios::binary);
-    out << content;
-    out.close();
-    std::error_code failed;
-    if (out)
-        std::filesystem::rename(partial, path, failed);
-    if (!out || failed) {
-        std::filesystem::remove(partial, failed);
-        throw Error(path + ": cannot be written",
-                    "check the folder, its permissions and free space");
-    }
-}
 
 json measure(const Words& words) {
     bench::IntersectionOptions options;
@@ -89,7 +72,7 @@ json measure(const Words& words) {
                 std::string names;
                 for (const auto& v : views)
                     names += (names.empty() ? "" : ", ") + v.name;
-                throw Error("--view: no view is called '" + wanted + "'", "use " + names);
+                throw Error("--views: no view is called '" + wanted + "'", "use " + names);
             }
             chosen.push_back(*at);
         }
@@ -286,7 +269,7 @@ int run_bench(const Words& words) {
     try {
         print_table(all);
         if (!words.json_file.empty())
-            write_file(words.json_file, all.dump(1) + "\n");
+            write_beside(words.json_file, all.dump(1) + "\n");
         if (!words.chart.empty())
             draw_trades(trades_of(all), words.chart);
     } catch (const json::exception& error) {

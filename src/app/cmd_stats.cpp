@@ -67,20 +67,6 @@ std::string csv(const dem::StageTable& table) {
     return out;
 }
 
-void write_beside(const std::string& path, const std::string& content) {
-    const std::string partial = path + text(".partial-", ::getpid());
-    std::ofstream out(partial, std::ios::binary);
-    out << content;
-    out.close();
-    std::error_code failed;
-    if (out)
-        std::filesystem::rename(partial, path, failed);
-    if (!out || failed) {
-        std::filesystem::remove(partial, failed);
-        throw Error(path + ": cannot be written", "check the folder and its permissions");
-    }
-}
-
 int run_stats(const Words& words) {
     const std::vector<double> levels = parse_levels(words.levels);
     const scene::Scene scene = scene_files::load(words.scene);

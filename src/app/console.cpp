@@ -9,6 +9,8 @@
 #include <csignal>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
+#include <fstream>
 #include <unistd.h>
 
 namespace tarn::app {
@@ -113,6 +115,21 @@ std::string format_volume(double m3) {
     return m3 >= 1e8   ? fixed(m3 / 1e9, 4) + " km3"
            : m3 >= 1e6 ? fixed(m3 / 1e6, 3) + " million m3"
                        : fixed(m3, 0) + " m3";
+}
+
+void write_beside(const std::string& path, const std::string& content) {
+    const std::string partial = path + text(".partial-", ::getpid());
+    std::ofstream out(partial, std::ios::binary);
+    out << content;
+    out.close();
+    std::error_code failed;
+    if (out)
+        std::filesystem::rename(partial, path, failed);
+    if (!out || failed) {
+        std::filesystem::remove(partial, failed);
+        throw Error(path + ": cannot be written",
+                    "check the folder, its permissions and free space");
+    }
 }
 
 } // namespace tarn::app

@@ -33,4 +33,8 @@ GeoPoint parse_place(const std::string& option, const std::string& words);
 std::string format_area(double m2);
 std::string format_volume(double m3);
 
+/// Writes a text file beside its name and renames it, so that no half file is left.
+/// @throws tarn::Error  if it cannot be written
+void write_beside(const std::string& path, const std::string& content);
+
 } // namespace tarn::app

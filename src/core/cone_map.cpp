@@ -63,7 +63,6 @@ Grid<Code> surface_codes(const Heightfield& ground, const Heightfield* water, Co
     const GridSize size = ground.size();
     map.offset_m = ground.offset_m;
     map.scale_m = ground.scale_m;
-    map.highest_m = ground.max_elevation_m();
     if (!water)
         return ground.codes;
     Code wettest = no_water_code;
@@ -71,9 +70,10 @@ Grid<Code> surface_codes(const Heightfield& ground, const Heightfield* water, Co
         wettest = std::max(wettest, code);
     if (wettest == no_water_code)
         return ground.codes;
-    map.highest_m = std::max(map.highest_m, water->offset_m + water->scale_m * wettest);
+    const double highest_m =
+        std::max(ground.max_elevation_m(), water->offset_m + water->scale_m * wettest);
     // Coarser codes only if water stands higher than the ground's can say.
-    map.scale_m = std::max(map.scale_m, (map.highest_m - map.offset_m) / 65534.0);
+    map.scale_m = std::max(map.scale_m, (highest_m - map.offset_m) / 65534.0);
     const bool same = map.scale_m == ground.scale_m;
     Grid<Code> out(size);
     share_out(size.rows, threads, [&](int first, int last) {

@@ -11,12 +11,12 @@
 ///         So a ray at height z somewhere above C that moves `l` columns plus rows and sinks `s`
 ///         per metre of path meets nothing before (z - top) / (slope * l + s) metres, nor before
 ///         the lesser of (z - top) / s and free / l.
-/// Why it  In each cell d is linear in the column and linear in the row, for the block's border
-/// runs holds   along grid lines; so is, along each grid line, the bilinear surface. Where a bound
-/// holds at
-///         the four nodes it therefore holds in the whole cell. With the Euclidean distance of
-///         published cone maps it does not: that distance is convex, lies BELOW its interpolation
-///         between nodes, and the surface may stick out of a cone that all nodes keep.
+/// Proof   In each cell d is linear in the column and linear in the row, for the block's border
+///         runs along grid lines; so is, along each grid line, the bilinear surface. Where a bound
+///         holds at the four nodes it therefore holds in the whole cell. With the Euclidean
+///         distance of published cone maps it does not: that distance is convex, lies BELOW its
+///         interpolation between nodes, and the surface may stick out of a cone that all nodes
+///         keep.
 /// Source  cone step mapping: Dummer 2006; the bound and its computation are our own. A slope s is
 ///         good for C if the L1 dilation max_q(height(q) - s d(p, q)) does not rise above top(C) on
 ///         any node p of C; a dilation is two sweeps along rows and columns, so a ladder of slopes
@@ -29,12 +29,11 @@
 namespace tarn {
 
 struct ConeMap {
-    int shift = 0;        ///< blocks are 2^shift cells a side
-    GridSize blocks;      ///< the last ones may reach beyond the field
-    double offset_m = 0;  ///< elevation of code 0
-    double scale_m = 1;   ///< metres per code, of tops
-    double slope_m = 0;   ///< steepest slope [m per cell]; others are (code / 65535)^2 of it
-    double highest_m = 0; ///< no place of the surface is higher
+    int shift = 0;       ///< blocks are 2^shift cells a side
+    GridSize blocks;     ///< the last ones may reach beyond the field
+    double offset_m = 0; ///< elevation of code 0
+    double scale_m = 1;  ///< metres per code, of tops
+    double slope_m = 0;  ///< steepest slope [m per cell]; others are (code / 65535)^2 of it
     /// Two codes a block, row by row: its top, and its slope with more in the lower eight bits,
     /// which only make it steeper: bit 0: there is water in the block or within three cells of it;
     /// bits 1 to 7: a quarter of the free distance in cells.

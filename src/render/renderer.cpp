@@ -142,7 +142,7 @@ void Renderer::prepare(const scene::View& view) {
         throw Error(text("the camera is more than four million cells (",
                          std::lround(4e3 * ground.spacing_m), " km) away from the scene"),
                     "check its position");
-    block_.base.x = float(std::floor(col)); // a float from 2^24 on holds a node near it
+    block_.base.x = float(std::floor(col));
     block_.base.y = float(std::floor(row));
     block_.camera = {float(col - double(block_.base.x)), float(row - double(block_.base.y)),
                      float(p.z - ground.offset_m), float(pixel_rad)};
@@ -323,8 +323,10 @@ void Renderer::draw_once() {
     const int width = int(block_.counts.x), height = int(block_.counts.y),
               rows = hits_[0].height_px();
     view_buffer_.write(&block_, sizeof block_);
-    bind_walk((block_.counts.z & TARN_FLAG_UNDER_WATER) == 0);
-    find_beams();
+    if (block_.offset.z == 0.0f) { // beams hold whole pixels: the first sample's serve all
+        bind_walk((block_.counts.z & TARN_FLAG_UNDER_WATER) == 0);
+        find_beams();
+    }
     for (int top = 0; top < height; top += rows) {
         block_.tile = {0, top, width, std::min(rows, height - top)};
         draw_tile();

@@ -10,6 +10,7 @@
 #include "render/renderer.hpp"
 #include "scene/presets.hpp"
 #include "scene/samples.hpp"
+#include "support/words.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -26,16 +27,7 @@ namespace {
 
 using namespace tarn;
 
-std::vector<std::string> split(const std::string& words) {
-    std::vector<std::string> out;
-    std::size_t from = 0;
-    while (from <= words.size()) {
-        const std::size_t comma = std::min(words.find(',', from), words.size());
-        out.push_back(words.substr(from, comma - from));
-        from = comma + 1;
-    }
-    return out;
-}
+using test_support::split;
 
 scene::Camera camera_for(const std::string& view) {
     if (view == "high")

@@ -10,6 +10,7 @@
 #include "core/text.hpp"
 #include "gpu/context.hpp"
 #include "scene/samples.hpp"
+#include "support/words.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -20,16 +21,7 @@ namespace {
 
 using namespace tarn;
 
-std::vector<std::string> split(const std::string& words) {
-    std::vector<std::string> out;
-    std::size_t from = 0;
-    while (from <= words.size()) {
-        const std::size_t comma = std::min(words.find(',', from), words.size());
-        out.push_back(words.substr(from, comma - from));
-        from = comma + 1;
-    }
-    return out;
-}
+using test_support::split;
 
 int run(int argc, char** argv) {
     std::string sides = "1024,4096", sizes = "1920x1080", views = "high,grazing,shore,below", json;

@@ -1,8 +1,8 @@
 // lib/walks/cone_map.glsl — exact: from cone to cone through the air, then cell by cell.
 //
-// Source   cone step mapping (Dummer 2006) with a plain disc around each cone's foot, made conservative for the bilinear surface by measuring
-//          distance as columns plus rows (src/core/cone_map.hpp says why that suffices), and ended by
-//          the exact patch. The union of the seed's safety distances with exactness.
+// Source   cone step mapping (Dummer 2006) with a plain disc around each cone's foot, made conservative for
+//          the bilinear surface by measuring distance as columns plus rows (src/core/cone_map.hpp says
+//          why that suffices), and ended by the exact patch.
 // Exact    Cones are left where the next step would be shorter than a quarter cell; there the cell is
 //          solved and left through its border, counted in whole cells. So no epsilon is needed, and
 //          there are at most eight steps for each column and row.
