@@ -39,12 +39,13 @@ float fresnel_schlick(float cos_i, float eta) {
     return r0 + (1.0 - r0) * m * m * m * m * m;
 }
 
-// refracted — direction of the ray that passes a horizontal surface.
+// refracted — direction of the ray that passes a surface.
 //
-//   direction  unit, not parallel to the surface, not beyond the critical angle
+//   direction  unit, not beyond the critical angle
+//   normal     unit, on the side that the ray comes from
 //   eta        n(incident side) / n(far side)
-vec3 refracted(vec3 direction, float eta) {
-    vec2 flat_part = eta * direction.xy; // Snell: the part along the surface scales by eta
-    float vertical = sqrt(max(0.0, 1.0 - dot(flat_part, flat_part)));
-    return vec3(flat_part, direction.z < 0.0 ? -vertical : vertical);
+vec3 refracted(vec3 direction, vec3 normal, float eta) {
+    float cosine = -dot(direction, normal);
+    vec3 flat_part = eta * (direction + cosine * normal); // Snell: the part along the surface scales by eta
+    return flat_part - sqrt(max(0.0, 1.0 - dot(flat_part, flat_part))) * normal;
 }

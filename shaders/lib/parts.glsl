@@ -40,20 +40,28 @@ struct Split {
     float mirror, through;     // factors on radiance that comes from there
 };
 
-// split_at_surface — where a view ray goes on at flat water, and what each branch counts.
+// split_at_surface — where a view ray goes on at the water, and what each branch counts.
 //
 //   direction   unit, of the view ray
+//   normal      unit, of the surface, upwards. A mirrored ray that a steep wave would send into the water from
+//               above, or out of it from below, is turned back: a stand-in for its second bounce.
 //   index       of refraction of the water
 //   from_water  the ray comes from below
 //   schlick     approximate reflectance
 // Source  Snell and Fresnel; what is conserved along a ray is radiance over index squared.
-Split split_at_surface(vec3 direction, float index, bool from_water, bool schlick) {
-    float eta = from_water ? index : 1.0 / index;
-    float cosine = min(abs(direction.z), 1.0);
+Split split_at_surface(vec3 direction, vec3 normal, float index, bool from_water, bool schlick) {
+    float eta = from_water ? index : 1.0 / index, side = from_water ? -1.0 : 1.0;
+    vec3 facing = side * normal;
+    float cosine = clamp(-dot(direction, facing), 0.0, 1.0);
     float mirror = schlick ? fresnel_schlick(cosine, eta) : fresnel_dielectric(cosine, eta);
-    vec3 reflected = vec3(direction.xy, -direction.z);
-    return Split(reflected, mirror < 1.0 ? refracted(direction, eta) : reflected, mirror,
-                 (1.0 - mirror) * eta * eta);
+    vec3 reflected = direction + 2.0 * cosine * facing;
+    reflected.z = side * abs(reflected.z);
+    vec3 through = reflected;
+    if (mirror < 1.0) {
+        through = refracted(direction, facing, eta);
+        through.z = -side * abs(through.z);
+    }
+    return Split(reflected, through, mirror, (1.0 - mirror) * eta * eta);
 }
 
 struct Part {
@@ -74,15 +82,25 @@ Part camera_part(ViewBlock view, ivec2 pixel) {
                 view.options.y, view.options.z > 0.5);
 }
 
+// The water's surface where part 0 met it.
+struct Surface {
+    vec2 slope;     // rise per metre east and north
+    float level;    // mean
+};
+
+// calm_surface — where there are no waves.
+Surface calm_surface(Part first, End end) {
+    return Surface(vec2(0.0), first.in_water ? first.level : first.origin.z + end.t * first.direction.z);
+}
+
 // split_part — part 1 or 2 from where part 0 met the surface.
-Part split_part(ViewBlock view, Part first, End end, int number) {
-    float level = first.in_water ? first.level : first.origin.z + end.t * first.direction.z;
-    Split split = split_at_surface(first.direction, view.attenuation.w, first.in_water,
-                                   (view.counts.z & TARN_FLAG_SCHLICK) != 0u);
+Part split_part(ViewBlock view, Part first, End end, Surface surface, int number) {
+    Split split = split_at_surface(first.direction, normalize(vec3(-surface.slope, 1.0)), view.attenuation.w,
+                                   first.in_water, (view.counts.z & TARN_FLAG_SCHLICK) != 0u);
     bool mirrored = number == 1;
-    return Part(vec2(end.cell), vec3(end.inside, level), mirrored ? split.reflected : split.refracted,
-                mirrored ? split.mirror : split.through, mirrored == first.in_water, level,
-                (end.flags & end_bed_known) != 0u);
+    return Part(vec2(end.cell), vec3(end.inside, first.origin.z + end.t * first.direction.z),
+                mirrored ? split.reflected : split.refracted, mirrored ? split.mirror : split.through,
+                mirrored == first.in_water, surface.level, (end.flags & end_bed_known) != 0u);
 }
 
 // wanted — whether a part of that number is drawn at all.

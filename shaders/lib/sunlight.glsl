@@ -5,7 +5,7 @@
 // sun_below — direction towards the sun as seen from under water, unit; straight up for a sun that is
 //             below the horizon.
 vec3 sun_below(vec3 sun, float index) {
-    return sun.z > 0.0 ? -refracted(-sun, 1.0 / index) : vec3(0.0, 0.0, 1.0);
+    return sun.z > 0.0 ? -refracted(-sun, vec3(0.0, 0.0, 1.0), 1.0 / index) : vec3(0.0, 0.0, 1.0);
 }
 
 // sun_share_below — irradiance just below the surface on a plane facing the refracted beam, as a share

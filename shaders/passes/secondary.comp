@@ -9,6 +9,10 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
 layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
+#ifdef TARN_WAVES
+#include "shared/wave_block.h"
+layout(binding = TARN_IMAGE_SURFACE, rgba32f) uniform readonly image2D surfaces;
+#endif
 layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform readonly uimage2D first_hits;
 layout(binding = TARN_IMAGE_HITS + 1, rgba32ui) uniform writeonly uimage2D mirrored_hits;
 layout(binding = TARN_IMAGE_HITS + 2, rgba32ui) uniform writeonly uimage2D refracted_hits;
@@ -21,7 +25,14 @@ void main() {
     if ((first_end.flags & end_surface) == 0u)
         return;
     int number = 1 + int(gl_GlobalInvocationID.z);
-    Part part = split_part(view, camera_part(view, local + view.tile.xy), first_end, number);
+    Part first = camera_part(view, local + view.tile.xy);
+#ifdef TARN_WAVES
+    vec4 met = imageLoad(surfaces, local);
+    Surface surface = Surface(met.xy, met.z);
+#else
+    Surface surface = calm_surface(first, first_end);
+#endif
+    Part part = split_part(view, first, first_end, surface, number);
     if (!wanted(view, part, number))
         return;
     float limit = reach(view, part);

@@ -17,6 +17,14 @@ layout(binding = TARN_TEXTURE_OVERLAY) uniform sampler2D overlay;
 layout(binding = TARN_IMAGE_RADIANCE, rgba32f) uniform image2D radiance_image;
 layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform readonly uimage2D hits[3];
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
+#ifdef TARN_WAVES
+#include "lib/waves.glsl"
+layout(binding = TARN_BLOCK_WAVES, std140) uniform Waves { WaveBlock waves; };
+layout(binding = TARN_TEXTURE_WAVES) uniform sampler2DArray wave_heights;
+layout(binding = TARN_TEXTURE_AMPLITUDE) uniform sampler2D amplitudes;
+layout(binding = TARN_TEXTURE_WAVE_TABLE) uniform sampler2D wave_table;
+layout(binding = TARN_IMAGE_SURFACE, rgba32f) uniform readonly image2D surfaces;
+#endif
 
 const float inverse_pi = 0.318309886184;
 // Mean slant of skylight in the water, refracted from an even sky, and what the surface lets in of it
@@ -108,6 +116,58 @@ vec3 part_radiance(Part part, End end, float before_m, out vec3 remaining) {
     return radiance;
 }
 
+#ifdef TARN_WAVES
+// Slopes of a wavy surface inside a pixel, and what they do to light from above, in the mean over those that
+// face the viewer. Facets that hide each other are left to the even chance of each (Smith 1967's assumption).
+struct Glitter {
+    vec3 sky;      // radiance of the sky mirrored, reflectance in it
+    float mirror;  // mean reflectance
+    vec3 sun;      // radiance of the sun mirrored
+};
+
+Glitter glitter_of(Part first, End end, Surface surface) {
+    vec2 at = (vec2(end.cell) + end.inside - view.base.xy) * view.grid.z;
+    at.y = -at.y;
+    vec4 ground = textureGather(heights, (vec2(end.cell) + 1.0) * view.inverse_size.xy, 0) * view.heights.y;
+    vec4 amplitude = wave_fade(waves, surface.level - bilinear(ground, end.inside)) * wave_amplitude(amplitudes, waves, at);
+    float footprint = view.camera.w * end.t * inversesqrt(max(abs(first.direction.z), 0.02)); // meet_waves.glsl
+    vec3 taken;
+    wave_slopes(wave_heights, wave_table, waves, at, footprint, amplitude, taken);
+    vec3 to_viewer = -first.direction;
+    bool schlick = on(TARN_FLAG_SCHLICK);
+    float eta = 1.0 / view.attenuation.w, seen = 0.0;
+    Glitter g = Glitter(vec3(0.0), 0.0, vec3(0.0));
+    for (int i = 0; i < 9; ++i) {
+        SlopePoint point = slope_point(surface.slope, taken, i);
+        float size = facing(to_viewer, point.slope), weight = point.chance * size;
+        vec3 normal = normal_of_slope(point.slope);
+        float cosine = clamp(dot(to_viewer, normal), 0.0, 1.0);
+        float mirror = schlick ? fresnel_schlick(cosine, eta) : fresnel_dielectric(cosine, eta);
+        vec3 reflected = first.direction + 2.0 * cosine * normal;
+        reflected.z = abs(reflected.z);
+        seen += weight;
+        g.mirror += weight * mirror;
+        g.sky += weight * mirror * sky_radiance(sky_table, reflected, view.sun.xyz);
+    }
+    float least = max(seen, 1e-4);
+    g.mirror = seen > 0.0 ? g.mirror / least : 1.0;
+    g.sky /= least;
+    if (on(TARN_FLAG_SUN_DISC) && (end.flags & end_lit) != 0u) {
+        // Cox & Munk 1954: the share of facets that throw the sun into the eye. The sun's own width, seen in a
+        // mirror, is half of it in slope.
+        vec3 halfway = normalize(to_viewer + view.sun.xyz);
+        vec2 needed = -halfway.xy / halfway.z;
+        float width = 0.0625 * view.sun.w * view.sun.w;
+        float chance = slope_density(needed - surface.slope, taken + vec3(width, 0.0, width));
+        float cosine = clamp(dot(to_viewer, halfway), 0.0, 1.0);
+        float mirror = schlick ? fresnel_schlick(cosine, eta) : fresnel_dielectric(cosine, eta);
+        float up2 = halfway.z * halfway.z;
+        g.sun = view.sun_irradiance.rgb * (mirror * chance / (4.0 * up2 * up2 * least));
+    }
+    return g;
+}
+#endif
+
 void main() {
     ivec2 local = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(local, view.tile.zw)))
@@ -119,15 +179,38 @@ void main() {
     vec3 radiance = part_radiance(first, first_end, 0.0, remaining);
     if ((first_end.flags & end_overlay) != 0u)
         radiance += remaining * texelFetch(overlay, pixel, 0).rgb;
-    if ((first_end.flags & end_surface) != 0u)
+    if ((first_end.flags & end_surface) != 0u) {
+#ifdef TARN_WAVES
+        vec4 met = imageLoad(surfaces, local);
+        Surface surface = Surface(met.xy, met.z);
+        Glitter glitter;
+        if (!first.in_water)
+            glitter = glitter_of(first, first_end, surface);
+#else
+        Surface surface = calm_surface(first, first_end);
+#endif
         for (int number = 1; number < 3; ++number) {
-            Part part = split_part(view, first, first_end, number);
+            Part part = split_part(view, first, first_end, surface, number);
             if (!wanted(view, part, number))
                 continue;
             End end = unpack_end(number == 1 ? imageLoad(hits[1], local) : imageLoad(hits[2], local));
             vec3 ignored;
+#ifdef TARN_WAVES
+            if (!first.in_water) {
+                if (number == 2) {
+                    part.weight = (1.0 - glitter.mirror) / (view.attenuation.w * view.attenuation.w);
+                } else if ((end.flags & end_ground) != 0u) {
+                    part.weight = glitter.mirror;
+                    radiance += remaining * glitter.sun;
+                } else {
+                    radiance += remaining * (glitter.sky + glitter.sun);
+                    continue;
+                }
+            }
+#endif
             radiance += remaining * part.weight * part_radiance(part, end, first_end.t, ignored);
         }
+    }
     radiance *= view.options.w;
     if (view.offset.z > 0.5)
         radiance += imageLoad(radiance_image, pixel).rgb;

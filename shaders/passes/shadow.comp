@@ -13,6 +13,10 @@ layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
 layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
 layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform uimage2D hits[3];
+#ifdef TARN_WAVES
+#include "shared/wave_block.h"
+layout(binding = TARN_IMAGE_SURFACE, rgba32f) uniform readonly image2D surfaces;
+#endif
 
 void main() {
     ivec2 local = ivec2(gl_GlobalInvocationID.xy);
@@ -25,18 +29,31 @@ void main() {
         End first_end = unpack_end(stored);
         if ((first_end.flags & end_surface) == 0u)
             return;
-        part = split_part(view, part, first_end, number);
+#ifdef TARN_WAVES
+        vec4 met = imageLoad(surfaces, local);
+        Surface surface = Surface(met.xy, met.z);
+#else
+        Surface surface = calm_surface(part, first_end);
+#endif
+        part = split_part(view, part, first_end, surface, number);
         if (!wanted(view, part, number))
             return;
         stored = number == 1 ? imageLoad(hits[1], local) : imageLoad(hits[2], local);
     }
     End end = unpack_end(stored);
-    if ((end.flags & end_ground) == 0u)
+    uint shaded = end_ground;
+#ifdef TARN_WAVES
+    if (!part.in_water && number == 0)
+        shaded |= end_surface; // glitters where the sun reaches it
+#endif
+    if ((end.flags & shaded) == 0u)
         return;
     Field field = field_of(view);
     vec3 sun = view.sun.xyz;
     vec3 towards = part.in_water ? sun_below(sun, view.attenuation.w) : sun;
     vec3 normal = normal_of(ground_gradient(heights, view.grid.xy, end.cell, end.inside, view.heights.y), view.grid.z);
+    if ((end.flags & end_surface) != 0u)
+        normal = vec3(0.0, 0.0, 1.0);
     if (sun.z <= 0.0 || dot(normal, towards) <= 0.0)
         return;
     float height = part.origin.z + end.t * part.direction.z + view.options.x;

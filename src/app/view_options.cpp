@@ -129,6 +129,43 @@ glm::dvec3 sun_direction(const scene::Scene& scene, double julian_date_utc) {
     return towards(sun.azimuth_deg - convergence_at(scene, p.x_m, p.y_m), sun.elevation_deg);
 }
 
+void add_wave_options(CLI::App& c, ViewWords& w) {
+    std::vector<std::string> models;
+    for (const waves::ModelName& model : waves::model_names())
+        models.emplace_back(model.name);
+    const waves::Settings usual;
+    c.add_option("--waves", w.waves,
+                 "model of the waves; default: the scene's, else calm, or jonswap with --wind")
+        ->check(CLI::IsMember(models));
+    c.add_option("--wind", w.wind,
+                 text("speed of the wind at 10 m [m/s]; default ", usual.wind_m_per_s));
+    c.add_option("--wind-from", w.wind_from,
+                 text("where it comes from [deg from true north]; default ", usual.wind_from_deg));
+    c.add_option("--wave-time", w.wave_time, "time at which the waves are shown [s]");
+    c.add_option("--wave-loop", w.wave_loop,
+                 text("they repeat themselves after this [s]; default ", usual.loop_s));
+    c.add_option("--wave-list", w.wave_list,
+                 "AMPLITUDE,LENGTH,TOWARDS[,PHASE] of each wave [m, m, deg, rad], with / between "
+                 "them: for the models sines and gerstner");
+    c.add_option("--fetch", w.fetch, "open water upwind [m]; default: by the lake's shape");
+    c.add_option("--wave-depth", w.wave_depth,
+                 "depth that waves run in [m]; default: the lake's mean");
+    c.add_option(
+        "--choppiness", w.choppiness,
+        text("of spectral waves, 0 round to 1 and above peaked; default ", usual.choppiness));
+    c.add_option("--spreading", w.spreading,
+                 text("power of the cosine of phillips' directions; default ", usual.spreading));
+    c.add_option("--shortest-wave", w.shortest_wave,
+                 "shorter ones are damped [m]; default: by Cox and Munk's slopes");
+    c.add_option("--wave-patch", w.wave_patch,
+                 "side of the largest patch [m]; default: by the longest waves");
+    c.add_option("--wave-cascades", w.wave_cascades,
+                 text("patches of different size, 1 to 4; default ", usual.cascades));
+    c.add_option("--wave-texels", w.wave_texels,
+                 text("a side of each, 128 to 2048; default ", usual.texels));
+    c.add_option("--wave-seed", w.wave_seed, text("same seed, same sea; default ", usual.seed));
+}
+
 void add_view_options(CLI::App& c, ViewWords& w) {
     c.add_option(
          "--camera", w.camera,
@@ -172,6 +209,7 @@ void add_view_options(CLI::App& c, ViewWords& w) {
     c.add_flag("--no-reflection", w.no_reflection, "leave out what the water mirrors");
     c.add_flag("--no-refraction", w.no_refraction, "leave out what is seen through the surface");
     c.add_flag("--no-sun-disc", w.no_sun_disc, "leave out the sun itself");
+    add_wave_options(c, w);
     c.add_option("--settings", w.settings_file,
                  "file with any of these options, one name = value a line");
 }
@@ -202,6 +240,51 @@ void apply_settings_file(CLI::App& c, const ViewWords& w) {
     }
 }
 
+waves::Settings make_waves(const ViewWords& w, const scene::Scene& scene) {
+    waves::Settings s = scene.waves;
+    if (w.waves)
+        s.model = waves::model_from_name(*w.waves);
+    else if (w.wind && s.model == waves::Model::calm)
+        s.model = waves::Model::jonswap;
+    s.wind_m_per_s = w.wind.value_or(s.wind_m_per_s);
+    if (w.wind_from) {
+        const ScenePoint p = geo::to_scene(scene.frame, scene.lakes.front().position);
+        s.wind_from_deg = *w.wind_from - convergence_at(scene, p.x_m, p.y_m);
+    }
+    s.time_s = w.wave_time.value_or(s.time_s);
+    s.loop_s = w.wave_loop.value_or(s.loop_s);
+    s.choppiness = w.choppiness.value_or(s.choppiness);
+    s.spreading = w.spreading.value_or(s.spreading);
+    s.cascades = w.wave_cascades.value_or(s.cascades);
+    s.texels = w.wave_texels.value_or(s.texels);
+    s.seed = w.wave_seed.value_or(s.seed);
+    if (w.fetch)
+        s.fetch_m = w.fetch;
+    if (w.wave_depth)
+        s.depth_m = w.wave_depth;
+    if (w.shortest_wave)
+        s.shortest_m = w.shortest_wave;
+    if (w.wave_patch)
+        s.patch_m = w.wave_patch;
+    if (w.wave_list) {
+        s.list.clear();
+        std::size_t from = 0;
+        while (from <= w.wave_list->size()) {
+            const std::size_t end = std::min(w.wave_list->find('/', from), w.wave_list->size());
+            const std::string one = w.wave_list->substr(from, end - from);
+            const std::size_t numbers = 1 + std::size_t(std::count(one.begin(), one.end(), ','));
+            if (numbers != 3 && numbers != 4)
+                throw Error("--wave-list: '" + one + "' is not understood",
+                            "write AMPLITUDE,LENGTH,TOWARDS or AMPLITUDE,LENGTH,TOWARDS,PHASE");
+            const auto v = parse_numbers("--wave-list", one, numbers);
+            s.list.push_back({v[0], v[1], v[2], numbers == 4 ? v[3] : 0.0});
+            from = end + 1;
+        }
+    }
+    s.validate();
+    return s;
+}
+
 scene::View make_view(const ViewWords& w, scene::Scene& scene) {
     scene::View view;
     view.settings = w.settings;
@@ -221,6 +304,7 @@ scene::View make_view(const ViewWords& w, scene::Scene& scene) {
     view.settings.reflection = !w.no_reflection;
     view.settings.refraction = !w.no_refraction;
     view.settings.validate();
+    view.waves = make_waves(w, scene);
 
     if (!w.absorption.empty() || !w.backscattering.empty() || w.index)
         scene.optics.name = "given by hand";

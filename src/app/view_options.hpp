@@ -17,11 +17,24 @@ struct ViewWords {
     std::string fresnel = "exact", intersection = "cone-map";
     bool no_shadows = false, no_reflection = false, no_refraction = false, no_sun_disc = false;
     scene::RenderSettings settings;
+    // Waves: what is not given is as the scene says.
+    std::optional<std::string> waves, wave_list;
+    std::optional<double> wind, wind_from, wave_time, wave_loop, choppiness, spreading, fetch,
+        wave_depth, shortest_wave, wave_patch, rain;
+    std::optional<int> wave_cascades, wave_texels;
+    std::optional<std::uint32_t> wave_seed;
     std::string settings_file;
 };
 
 /// Adds these options to a command, and --settings FILE that reads them.
 void add_view_options(CLI::App& command, ViewWords& words);
+
+/// Only those that choose the waves.
+void add_wave_options(CLI::App& command, ViewWords& words);
+
+/// The waves that the words ask for, over what the scene says.
+/// @throws tarn::Error  naming the option and what is wrong
+waves::Settings make_waves(const ViewWords& words, const scene::Scene& scene);
 
 /// Takes from the file named by --settings what was not typed.
 /// @throws tarn::Error  naming the file and the line's name, if that is no option or has a bad

@@ -44,6 +44,24 @@ void Texture2D::download(GLenum components, GLenum type, void* out, std::size_t 
     glGetTextureImage(id(), 0, components, type, static_cast<GLsizei>(bytes), out);
 }
 
+TextureLayers::TextureLayers(GLenum format, int side_px, int layers, const std::string& label)
+    : format_(format), side_px_(side_px), layers_(layers), levels_(1) {
+    while (side_px >> levels_ > 0)
+        ++levels_;
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
+    name_ = Name<delete_texture>(id);
+    glTextureStorage3D(id, levels_, format, side_px, side_px, layers);
+    if (glGetError() == GL_OUT_OF_MEMORY)
+        throw Error(text("out of GPU memory for ", label, " of ", layers, " x ", side_px, "^2"),
+                    "use fewer or smaller ones");
+    glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTextureParameteri(id, GL_TEXTURE_WRAP_S, GL_REPEAT);
+    glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_REPEAT);
+    glObjectLabel(GL_TEXTURE, id, static_cast<GLsizei>(label.size()), label.c_str());
+}
+
 Sampler::Sampler() {
     GLuint id = 0;
     glCreateSamplers(1, &id);

@@ -69,6 +69,32 @@ private:
     int width_px_ = 0, height_px_ = 0;
 };
 
+/// Square layers of one size with all their mip levels; look-ups are trilinear and wrap around.
+class TextureLayers {
+public:
+    TextureLayers() = default;
+    /// @throws tarn::Error  if memory runs out
+    TextureLayers(GLenum format, int side_px, int layers, const std::string& label);
+    void bind(GLuint unit) const { glBindTextureUnit(unit, name_.get()); }
+    /// All layers of a level at once.
+    void bind_image(GLuint unit, GLenum access, int level) const {
+        glBindImageTexture(unit, name_.get(), level, GL_TRUE, 0, access, format_);
+    }
+    /// Reads all layers of a level into `bytes` bytes at `out`.
+    void download(int level, GLenum components, GLenum type, void* out, std::size_t bytes) const {
+        glGetTextureImage(name_.get(), level, components, type, GLsizei(bytes), out);
+    }
+    GLuint id() const { return name_.get(); }
+    int levels() const { return levels_; }
+    int side_px() const { return side_px_; }
+    int layers() const { return layers_; }
+
+private:
+    Name<delete_texture> name_;
+    GLenum format_ = 0;
+    int side_px_ = 0, layers_ = 0, levels_ = 0;
+};
+
 /// Bilinear look-up, edges clamped, for a texture that is made without: bound to a unit it takes
 /// precedence.
 class Sampler {

@@ -39,14 +39,13 @@ inline double fresnel_schlick(double cos_i, double eta) {
 }
 
 /// Same contract as the GLSL function of the same name; by angles.
-inline glm::dvec3 refracted(glm::dvec3 direction, double eta) {
-    const double along = std::hypot(direction.x, direction.y);
+inline glm::dvec3 refracted(glm::dvec3 direction, glm::dvec3 normal, double eta) {
+    const glm::dvec3 tangent = direction - glm::dot(direction, normal) * normal;
+    const double along = glm::length(tangent);
     if (along == 0.0)
         return direction;
     const double angle_t = std::asin(std::min(1.0, eta * along));
-    const double vertical = std::copysign(std::cos(angle_t), direction.z);
-    return {direction.x / along * std::sin(angle_t), direction.y / along * std::sin(angle_t),
-            vertical};
+    return tangent / along * std::sin(angle_t) - std::cos(angle_t) * normal;
 }
 
 } // namespace tarn::reference

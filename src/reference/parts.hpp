@@ -11,14 +11,21 @@ struct Split {
 
 /// Same contract as the GLSL function of the same name. Radiance over index squared is conserved:
 /// the branch through the surface counts the square of the ratio of the indices.
-inline Split split_at_surface(glm::dvec3 direction, double index, bool from_water, bool schlick) {
+inline Split split_at_surface(glm::dvec3 direction, glm::dvec3 normal, double index,
+                              bool from_water, bool schlick) {
     const double here = from_water ? index : 1.0, there = from_water ? 1.0 : index;
-    const double cosine = std::min(std::abs(direction.z), 1.0);
+    const glm::dvec3 facing = from_water ? -normal : normal;
+    const double cosine = std::clamp(-glm::dot(direction, facing), 0.0, 1.0);
     Split out;
     out.mirror =
         schlick ? fresnel_schlick(cosine, here / there) : fresnel_dielectric(cosine, here / there);
-    out.reflected = direction - 2.0 * direction.z * glm::dvec3(0, 0, 1);
-    out.refracted = out.mirror < 1.0 ? refracted(direction, here / there) : out.reflected;
+    out.reflected = glm::reflect(direction, facing);
+    if (glm::dot(direction, facing) > 0.0) // seen from behind: as if edge on
+        out.reflected = direction;
+    out.reflected.z = std::copysign(out.reflected.z, facing.z);
+    out.refracted = out.mirror < 1.0 ? refracted(direction, facing, here / there) : out.reflected;
+    if (out.mirror < 1.0)
+        out.refracted.z = std::copysign(out.refracted.z, -facing.z);
     out.through = (1.0 - out.mirror) * (here * here) / (there * there);
     return out;
 }

@@ -67,7 +67,7 @@ public:
 
 private:
     Split split(glm::dvec3 direction, bool from_water) const {
-        return split_at_surface(direction, index_, from_water,
+        return split_at_surface(direction, {0, 0, 1}, index_, from_water,
                                 settings_.fresnel == scene::Fresnel::schlick);
     }
 

@@ -30,6 +30,14 @@ int FieldBounds::root_level(GridSize nodes) {
     return level;
 }
 
+void FieldBounds::set_water_lift(double lift_m) {
+    if (lift_m == lift_m_)
+        return;
+    lift_m_ = lift_m;
+    maxima_ = {};
+    surface_cones_ = {};
+}
+
 void FieldBounds::prepare(scene::Walk walk, bool with_water) {
     switch (walk) {
     case scene::Walk::maximum_mipmap:
@@ -125,7 +133,13 @@ void FieldBounds::build_maxima() {
 }
 
 gpu::Texture2D FieldBounds::build_cones(bool with_water, ConeScale& scale) {
-    const ConeMap map = cone_map(scene_.ground, with_water ? &scene_.water : nullptr, shift);
+    Heightfield raised;
+    if (with_water && lift_m_ != 0.0) {
+        raised = scene_.water;
+        raised.offset_m += lift_m_;
+    }
+    const Heightfield& water = raised.codes.size.cols > 0 ? raised : scene_.water;
+    const ConeMap map = cone_map(scene_.ground, with_water ? &water : nullptr, shift);
     gpu::Texture2D texture(GL_RG16, map.blocks.cols, map.blocks.rows, 1, gpu::Filter::nearest,
                            "cone map");
     texture.upload(GL_RG, GL_UNSIGNED_SHORT, map.texels.data());

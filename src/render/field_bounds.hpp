@@ -31,6 +31,10 @@ public:
     };
     const ConeScale& ground_cones() const { return ground_scale_; }
     const ConeScale& surface_cones() const { return surface_scale_; }
+    /// Bounds that know of the water are made for water that is that much higher [m]; those made
+    /// for another height are dropped.
+    void set_water_lift(double lift_m);
+
     /// Of all that has been made.
     std::size_t bytes() const { return bytes_; }
 
@@ -46,6 +50,7 @@ private:
     gpu::Texture2D maxima_, ground_cones_, surface_cones_, radii_;
     gpu::Sampler smooth_;
     ConeScale ground_scale_, surface_scale_;
+    double lift_m_ = 0.0;
     std::size_t bytes_ = 0;
 };
 

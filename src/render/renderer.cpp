@@ -41,6 +41,10 @@ void Renderer::upload_scene() {
     heights_.upload(GL_RG, GL_UNSIGNED_SHORT, packed.data());
     heights_bytes_ = packed.size() * sizeof packed[0];
     block_.walk = {FieldBounds::root_level(size), FieldBounds::cone_shift, 0, 0};
+    water_top_m_ = -1e6; // where there is none: below everything
+    for (const std::uint16_t code : water.codes.values)
+        if (code != no_water_code)
+            water_top_m_ = std::max(water_top_m_, water.offset_m + water.scale_m * code);
 
     // Heights on the GPU count from the ground's offset: float32 then resolves a fraction of a
     // code even for relief at some kilometres of altitude.
@@ -55,23 +59,17 @@ void Renderer::upload_scene() {
     std::sort(lakes.begin(), lakes.end(),
               [](const glm::vec4& a, const glm::vec4& b) { return a.x < b.x; });
     lakes_ = gpu::Buffer(lakes.size() * sizeof lakes[0], lakes.data());
-    block_.grid = {float(size.cols), float(size.rows), float(ground.spacing_m),
-                   float(top - ground.offset_m)};
+    block_.grid = {float(size.cols), float(size.rows), float(ground.spacing_m), 0.0f};
     block_.counts.w = static_cast<std::uint32_t>(lakes.size());
     block_.forward.w = float(scene::block_bottom_m(ground) - ground.offset_m);
 
     const float per_m = 1.0f / block_.heights.y;
     block_.base.z = float(1.0 / ground.spacing_m);
     block_.inverse_size = {1.0f / float(size.cols), 1.0f / float(size.rows), 1.0f, 1.0f};
-    block_.units = {per_m, block_.heights.z * per_m, block_.heights.w * per_m,
-                    block_.grid.w * per_m};
     block_.bounds.w = block_.forward.w * per_m;
-    double water_top = -1e6; // where there is none: below everything
-    for (const std::uint16_t code : water.codes.values)
-        if (code != no_water_code)
-            water_top = std::max(water_top, water.offset_m + water.scale_m * code);
-    block_.slab = {float(ground.min_elevation_m() - ground.offset_m) * per_m,
-                   float(water_top - ground.offset_m) * per_m, 0.0f, 0.0f};
+    block_.slab = {float(ground.min_elevation_m() - ground.offset_m) * per_m, 0.0f, 0.0f, 0.0f};
+    top_m_ = top - ground.offset_m;
+    lift_water(0.0);
 
     if (scene_.ortho) {
         const Ortho& o = *scene_.ortho;
@@ -98,8 +96,7 @@ void Renderer::use_walk(scene::Walk walk, double setting) {
     block_.bounds.z = float(setting > 0.0 ? setting : method.default_setting);
     if (passes_.count(walk_))
         return;
-    std::string file = method.name;
-    std::replace(file.begin(), file.end(), '-', '_');
+    const std::string file = walk_file();
     const auto root = gpu::shader_root();
     // See lib/walks/cone_map.glsl.
     const std::string defined = rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "";
@@ -110,6 +107,67 @@ void Renderer::use_walk(scene::Walk walk, double setting) {
     };
     passes_.emplace(walk_, WalkPasses{pass("beams"), pass("primary"), pass("secondary"),
                                       pass("shadow"), pass("first_hit"), pass("trace_rays")});
+}
+
+std::string Renderer::walk_file() const {
+    std::string file = scene::walk_method(walk_).name;
+    std::replace(file.begin(), file.end(), '-', '_');
+    return file;
+}
+
+const Renderer::WavyPasses& Renderer::wavy_passes() {
+    const std::string defined =
+        (rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "") + waves_->defines();
+    const auto key = std::pair(walk_, defined);
+    if (const auto known = wavy_passes_.find(key); known != wavy_passes_.end())
+        return known->second;
+    const auto pass = [&](const char* name) {
+        return gpu::ComputeProgram(gpu::load_shader(
+            gpu::shader_root(), text("passes/", name, ".comp"),
+            {{"lib/walks/cone_map.glsl", "lib/walks/" + walk_file() + ".glsl"}}, defined));
+    };
+    return wavy_passes_
+        .emplace(key, WavyPasses{pass("primary"), pass("secondary"), pass("shadow"), pass("shade")})
+        .first->second;
+}
+
+// Walks meet water that is raised by the waves' bound; what lies in the slab between is met by
+// lib/walks/meet_waves.glsl. Bounds that know of the water are made anew.
+void Renderer::lift_water(double lift_m) {
+    const Heightfield& ground = scene_.ground;
+    lift_m_ = lift_m;
+    bounds_.set_water_lift(lift_m);
+    block_.heights.z = float(scene_.water.offset_m - ground.offset_m + lift_m);
+    block_.grid.w = float(top_m_ + lift_m);
+    const float per_m = 1.0f / block_.heights.y;
+    block_.units = {per_m, block_.heights.z * per_m, block_.heights.w * per_m,
+                    block_.grid.w * per_m};
+    block_.slab.y = float(water_top_m_ + lift_m - ground.offset_m) * per_m;
+}
+
+void Renderer::prepare_waves(const scene::View& view) {
+    waves::Settings asked = view.waves;
+    const double time_s = asked.time_s;
+    asked.time_s = 0.0;
+    if (asked.calm()) {
+        waves_.reset();
+    } else if (!waves_ || !(waves_->sea().settings == asked)) {
+        if (!waves_)
+            waves_.emplace();
+        waves_->set(waves::make_sea(scene_.ground, scene_.water, scene_.lakes, asked));
+    }
+    // In steps of a quarter, so that a little more wind needs no new bounds.
+    double lift = 0.0;
+    if (wavy())
+        lift = std::pow(
+            1.25, std::ceil(std::log(std::max(waves_->sea().bound_m, 1e-3)) / std::log(1.25)));
+    if (lift != lift_m_)
+        lift_water(lift);
+    if (!wavy())
+        return;
+    waves_->move_to(time_s);
+    const Heightfield& ground = scene_.ground;
+    waves_->bind({ground.x_m(double(block_.base.x)), ground.y_m(double(block_.base.y))}, lift);
 }
 
 void Renderer::bind_walk(bool with_water) { bounds_.bind(walk_, with_water); }
@@ -144,6 +202,7 @@ void Renderer::prepare(const scene::View& view) {
                     "check its position");
     block_.base.x = float(std::floor(col));
     block_.base.y = float(std::floor(row));
+    prepare_waves(view);
     block_.camera = {float(col - double(block_.base.x)), float(row - double(block_.base.y)),
                      float(p.z - ground.offset_m), float(pixel_rad)};
     block_.forward = glm::vec4(glm::vec3(camera.forward), block_.forward.w);
@@ -185,7 +244,11 @@ void Renderer::prepare(const scene::View& view) {
         overlay_.bind(TARN_TEXTURE_OVERLAY);
     }
     const auto water = scene_.water_level_m(p.x, p.y);
-    if (water && p.z < *water) {
+    // Between trough and crest the waves decide where the camera is, asked of them below.
+    double surface_m = water.value_or(0.0);
+    if (water && wavy() && std::abs(p.z - *water) <= lift_m_)
+        surface_m += waves_->height_at({p.x, p.y}, *water - ground.elevation_m(p.x, p.y));
+    if (water && p.z < surface_m) {
         flags |= TARN_FLAG_UNDER_WATER;
         block_.options.y = float(*water - ground.offset_m);
         block_.options.z = scene_.lake_at_level(*water).bed != Bed::unknown ? 1.0f : 0.0f;
@@ -216,6 +279,11 @@ void Renderer::prepare(const scene::View& view) {
         for (gpu::Texture2D& hits : hits_)
             hits = gpu::Texture2D(GL_RGBA32UI, settings.width_px, tile_rows, 1,
                                   gpu::Filter::nearest, "hits");
+    if (wavy() && (surfaces_.width_px() != settings.width_px || surfaces_.height_px() != tile_rows))
+        surfaces_ = gpu::Texture2D(GL_RGBA32F, settings.width_px, tile_rows, 1,
+                                   gpu::Filter::nearest, "surfaces");
+    if (wavy())
+        surfaces_.bind_image(TARN_IMAGE_SURFACE, GL_READ_WRITE);
     for (GLuint k = 0; k < 3; ++k)
         hits_[k].bind_image(TARN_IMAGE_HITS + k, GL_READ_WRITE);
     const bool from_above = (flags & TARN_FLAG_UNDER_WATER) == 0;
@@ -246,23 +314,24 @@ void Renderer::draw_tile() {
     constexpr GLbitfield images = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
     const bool split = (block_.counts.z & (TARN_FLAG_REFLECTION | TARN_FLAG_REFRACTION)) != 0;
     glMemoryBarrier(images);
-    const WalkPasses& pass = passes_.at(walk_);
+    const WalkPasses& calm = passes_.at(walk_);
+    const WavyPasses* wavy_ones = wavy() ? &wavy_passes() : nullptr;
     bind_walk((block_.counts.z & TARN_FLAG_UNDER_WATER) == 0); // only from above is water met
-    pass.primary.use();
+    (wavy_ones ? wavy_ones->primary : calm.primary).use();
     glDispatchCompute(across, down, 1);
     glMemoryBarrier(images);
     bind_walk(false);
     if (split) {
-        pass.secondary.use();
+        (wavy_ones ? wavy_ones->secondary : calm.secondary).use();
         glDispatchCompute(across, down, 2);
         glMemoryBarrier(images);
     }
     if ((block_.counts.z & TARN_FLAG_SHADOWS) != 0 && block_.sun.z > 0.0f) {
-        pass.shadow.use();
+        (wavy_ones ? wavy_ones->shadow : calm.shadow).use();
         glDispatchCompute(across, down, split ? 3 : 1);
         glMemoryBarrier(images);
     }
-    shade_.use();
+    (wavy_ones ? wavy_ones->shade : shade_).use();
     glDispatchCompute(across, down, 1);
 }
 

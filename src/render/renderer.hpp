@@ -5,6 +5,7 @@
 #include "gpu/objects.hpp"
 #include "gpu/shader.hpp"
 #include "render/field_bounds.hpp"
+#include "render/waves.hpp"
 #include "scene/settings.hpp"
 
 #include "shared/view_block.h"
@@ -63,6 +64,10 @@ public:
     /// Binds heights, the bounds of a walk and the view block, for a program of one's own (tests).
     void bind_field(scene::Walk walk, bool with_water);
 
+    /// The sea of the last prepare(), where it was not calm.
+    const WaveField* waves() const { return wavy() ? &*waves_ : nullptr; }
+    WaveField* waves() { return wavy() ? &*waves_ : nullptr; }
+
     /// Memory of the heights and of all bounds made so far.
     std::size_t field_bytes() const { return heights_bytes_ + bounds_.bytes(); }
     /// For experiments: cells a side of the cone map's blocks, 2^shift. Before the first prepare().
@@ -76,9 +81,18 @@ private:
     struct WalkPasses {
         gpu::ComputeProgram beams, primary, secondary, shadow, first_hit, trace_rays;
     };
+    /// Those that know of waves, and the one that shades: a calm scene's programs hold none of it.
+    struct WavyPasses {
+        gpu::ComputeProgram primary, secondary, shadow, shade;
+    };
 
     void upload_scene();
     void use_walk(scene::Walk walk, double setting);
+    std::string walk_file() const;
+    void prepare_waves(const scene::View& view);
+    void lift_water(double lift_m);
+    bool wavy() const { return waves_ && !waves_->sea().still(); }
+    const WavyPasses& wavy_passes();
     void bind_walk(bool with_water);
     void find_beams();
     void set_sample(int sample, int samples);
@@ -93,6 +107,11 @@ private:
     gpu::ComputeProgram shade_;
     FieldBounds bounds_;
     std::map<scene::Walk, WalkPasses> passes_;
+    std::map<std::pair<scene::Walk, std::string>, WavyPasses> wavy_passes_;
+    std::optional<WaveField> waves_;
+    gpu::Texture2D surfaces_; ///< of the water met, for the passes after the first; with waves only
+    double top_m_ = 0.0, water_top_m_ = 0.0; ///< highest node, above z = 0; highest level
+    double lift_m_ = 0.0;                    ///< how far the walk's water is raised above its level
     scene::Walk walk_ = scene::Walk::cone_map;
     std::size_t heights_bytes_ = 0;
     int samples_ = 1;

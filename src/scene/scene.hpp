@@ -8,6 +8,7 @@
 #include "geo/frame_data.hpp"
 #include "scene/camera.hpp"
 #include "scene/water_optics.hpp"
+#include "waves/settings.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -37,6 +38,7 @@ struct Scene {
     Heightfield ground, water;     ///< same size, spacing and place
     std::vector<LakeRecord> lakes; ///< at least one
     WaterOptics optics;
+    waves::Settings waves; ///< what a picture of it shows unless told otherwise
     GroundLook look;
     std::vector<NamedCamera> cameras;
     std::optional<Ortho> ortho;

@@ -3,6 +3,7 @@
 #include "scene/camera.hpp"
 #include "scene/lighting.hpp"
 #include "scene/scene.hpp"
+#include "waves/settings.hpp"
 
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
@@ -70,6 +71,7 @@ struct View {
     Camera camera;
     Lighting lighting;
     RenderSettings settings;
+    waves::Settings waves;          ///< calm unless said
     std::optional<Overlay> overlay; ///< only the GPU's renderer looks at it
 };
 

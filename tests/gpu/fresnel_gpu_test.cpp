@@ -48,18 +48,23 @@ TEST(FresnelGpu, SchlickAgreesWithTheReference) {
 TEST(FresnelGpu, RefractedDirectionsAgree) {
     std::mt19937 random(5);
     std::normal_distribution<float> normal;
-    std::vector<glm::vec4> in;
+    std::vector<glm::vec4> in, facing;
     for (int i = 0; i < 20'000; ++i) {
         const glm::vec3 d =
             glm::normalize(glm::vec3(normal(random), normal(random), normal(random)));
+        glm::vec3 n = glm::normalize(glm::vec3(normal(random), normal(random), normal(random)));
+        n = glm::dot(n, d) > 0.0f ? -n : n;
         const float eta = i % 2 ? 0.75f : 1.333f;
-        if (eta * glm::length(glm::vec2(d)) < 0.999f)
-            in.emplace_back(d, eta);
+        if (eta * glm::length(glm::cross(n, d)) > 0.999f)
+            continue;
+        in.emplace_back(d, eta);
+        facing.emplace_back(n, 0.0f);
     }
-    const GpuFunction on_gpu("lib/fresnel.glsl", "result.xyz = refracted(x.xyz, x.w);");
-    const auto got = on_gpu(in);
+    const GpuFunction on_gpu("lib/fresnel.glsl", "result.xyz = refracted(x.xyz, y.xyz, x.w);");
+    const auto got = on_gpu(in, facing);
     for (std::size_t i = 0; i < in.size(); ++i) {
-        const glm::dvec3 expected = reference::refracted(glm::dvec3(in[i]), in[i].w);
+        const glm::dvec3 expected =
+            reference::refracted(glm::dvec3(in[i]), glm::dvec3(facing[i]), in[i].w);
         ASSERT_LT(glm::length(glm::dvec3(got[i]) - expected), 1e-5);
     }
 }

@@ -75,18 +75,20 @@ TEST(Fresnel, SchlickIsOffByUpToSixPercentNear84Degrees) {
 
 TEST(Refraction, FollowsSnellAndStaysInItsPlane) {
     const glm::dvec3 in = glm::normalize(glm::dvec3(0.6, -0.3, -0.5));
-    const glm::dvec3 out = refracted(in, into_water);
+    const glm::dvec3 out = refracted(in, {0, 0, 1}, into_water);
     EXPECT_NEAR(glm::length(out), 1.0, 1e-14);
     EXPECT_NEAR(std::hypot(out.x, out.y) * n_water, std::hypot(in.x, in.y), 1e-14);
     EXPECT_NEAR(out.x * in.y, out.y * in.x, 1e-14);
     // Incidence 59.917 degrees -> 40.477 degrees; the sun at 45 degrees -> 32.037 (n = 1.333).
-    EXPECT_NEAR(
-        std::acos(-refracted({std::sin(deg(59.917)), 0, -std::cos(deg(59.917))}, into_water).z) /
-            deg(1),
-        40.477, 1e-3);
-    EXPECT_NEAR(std::acos(-refracted({std::sin(deg(45)), 0, -std::cos(deg(45))}, into_water).z) /
+    EXPECT_NEAR(std::acos(-refracted({std::sin(deg(59.917)), 0, -std::cos(deg(59.917))}, {0, 0, 1},
+                                     into_water)
+                               .z) /
                     deg(1),
-                32.037, 1e-3);
+                40.477, 1e-3);
+    EXPECT_NEAR(
+        std::acos(-refracted({std::sin(deg(45)), 0, -std::cos(deg(45))}, {0, 0, 1}, into_water).z) /
+            deg(1),
+        32.037, 1e-3);
     EXPECT_NEAR(1 - fresnel_dielectric(std::cos(deg(59.917)), into_water), .94065, 1e-5);
 }
 

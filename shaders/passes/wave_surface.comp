@@ -1,0 +1,64 @@
+#version 450 core
+// passes/wave_surface.comp — one height and one slope over each place, from the transformed fields.
+// Reads fields; writes level 0 of the waves' texture. One invocation a texel and cascade (z).
+//
+// Choppy water (Tessendorf 2001, sec. 3.5): the point over x came from x' with x' + choppiness D(x') = x, found
+// by repeated substitution, which converges while no fold is near; `choppiness` is bounded to keep it so
+// (src/waves/sea.hpp). Whatever happens, there is one height over each place. Slopes are those of the
+// displaced surface: the transposed inverse of the Jacobian times the spectral derivative.
+#include "shared/wave_block.h"
+#ifndef TARN_FFT_N
+#define TARN_FFT_N 512
+#endif
+#ifndef TARN_WAVE_FIELDS
+#define TARN_WAVE_FIELDS 4
+#endif
+layout(local_size_x = 16, local_size_y = 8) in;
+layout(binding = TARN_BUFFER_WAVE_FIELDS, std430) readonly buffer Fields { vec2 fields[]; };
+layout(binding = TARN_IMAGE_WAVE_LEVELS, rgba32f) uniform writeonly image2DArray surface;
+layout(location = 0) uniform vec4 choppiness;
+layout(location = 1) uniform vec4 bound;  // on |height| [m]
+layout(location = 2) uniform vec4 per_m;  // texels a metre
+
+uint place(uint cascade, uint field, ivec2 at) {
+    const int n = TARN_FFT_N;
+    at &= n - 1;
+    return ((cascade * uint(TARN_WAVE_FIELDS) + field) * uint(n) + uint(at.y)) * uint(n) + uint(at.x);
+}
+
+// Bilinear, in texels.
+vec2 sampled(uint cascade, uint field, vec2 at) {
+    vec2 whole = floor(at), part = at - whole;
+    ivec2 i = ivec2(whole);
+    return mix(mix(fields[place(cascade, field, i)], fields[place(cascade, field, i + ivec2(1, 0))], part.x),
+               mix(fields[place(cascade, field, i + ivec2(0, 1))], fields[place(cascade, field, i + ivec2(1, 1))], part.x),
+               part.y);
+}
+
+void main() {
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    uint cascade = gl_GlobalInvocationID.z;
+    float height;
+    vec2 slope;
+    float least = 1.0;
+#if TARN_WAVE_FIELDS == 4
+    float chop = choppiness[cascade], scale = chop * per_m[cascade];
+    vec2 from = vec2(texel);
+    for (int i = 0; i < 5; ++i)
+        from = vec2(texel) - scale * sampled(cascade, 2u, from);
+    vec2 height_and_xy = sampled(cascade, 0u, from), diagonal = sampled(cascade, 3u, from);
+    slope = sampled(cascade, 1u, from);
+    float xx = 1.0 + chop * diagonal.x, yy = 1.0 + chop * diagonal.y, xy = chop * height_and_xy.y;
+    float middle = 0.5 * (xx + yy), reach = length(vec2(0.5 * (xx - yy), xy));
+    least = middle - reach;
+    // A fold would turn slopes over; held where the surface is steep but still a height field.
+    float determinant = max(least, 0.05) * max(middle + reach, 0.05);
+    slope = vec2(yy * slope.x - xy * slope.y, xx * slope.y - xy * slope.x) / determinant;
+    height = height_and_xy.x;
+#else
+    height = fields[place(cascade, 0u, texel)].x;
+    slope = fields[place(cascade, 1u, texel)];
+#endif
+    height = clamp(height, -bound[cascade], bound[cascade]);
+    imageStore(surface, ivec3(texel, int(cascade)), vec4(height, slope, least));
+}

@@ -1,0 +1,245 @@
+#include "render/waves.hpp"
+
+#include "core/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tarn::render {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr int table_rows = waves::most_cascades + 1;
+
+GLuint groups(int items, int of) { return static_cast<GLuint>((items + of - 1) / of); }
+
+/// Columns transformed side by side: four fill a sector of memory; large ones must fit in shared
+/// memory (32 KB are guaranteed) and in 1024 invocations.
+int lanes_for(int texels) { return std::min(4, 4096 / texels); }
+
+double fraction(double v) { return v - std::floor(v); }
+
+glm::vec4 per_cascade(const std::vector<waves::Cascade>& cascades,
+                      double (*value)(const waves::Cascade&)) {
+    glm::vec4 out(0.0f);
+    for (std::size_t j = 0; j < cascades.size(); ++j)
+        out[int(j)] = float(value(cascades[j]));
+    return out;
+}
+
+void set_uniform(GLint location, const glm::vec4& v) { glUniform4f(location, v.x, v.y, v.z, v.w); }
+
+} // namespace
+
+std::string WaveField::defines() const {
+    return sea_.still()
+               ? std::string()
+               : text("#define TARN_WAVES 1\n#define TARN_CASCADES ", sea_.cascades.size(), "\n");
+}
+
+void WaveField::build_passes() {
+    const int texels = sea_.cascades.front().texels;
+    bool choppy = false;
+    for (const waves::Cascade& c : sea_.cascades)
+        choppy |= c.choppiness > 0.0;
+    const int fields = choppy ? 4 : 2;
+    if (passes_.texels == texels && passes_.fields == fields)
+        return;
+    const auto root = gpu::shader_root();
+    const std::string defined =
+        text("#define TARN_FFT_N ", texels, "\n#define TARN_WAVE_FIELDS ", fields, "\n");
+    const std::string lanes = text("#define TARN_FFT_LANES ", lanes_for(texels), "\n");
+    const auto pass = [&](const char* name, const std::string& words) {
+        return gpu::ComputeProgram(gpu::load_shader(root, name, {}, words));
+    };
+    passes_ = {texels,
+               fields,
+               pass("passes/wave_rows.comp", defined),
+               pass("passes/wave_columns.comp", defined + lanes),
+               pass("passes/wave_surface.comp", defined),
+               pass("passes/wave_levels.comp", "")};
+    std::vector<glm::vec2> twiddles;
+    for (int n = 0; n < texels; ++n)
+        twiddles.emplace_back(std::cos(2.0 * pi * n / texels), std::sin(2.0 * pi * n / texels));
+    twiddles_ = gpu::Buffer(twiddles.size() * sizeof twiddles[0], twiddles.data());
+}
+
+void WaveField::set(waves::Sea sea) {
+    sea_ = std::move(sea);
+    if (sea_.still())
+        return;
+    bytes_ = 0;
+    limits_ = gpu::Texture2D(GL_R32UI, TARN_WAVE_LEVELS + 1, waves::most_cascades, 1,
+                             gpu::Filter::nearest, "wave limits");
+    if (sea_.cascades.empty()) {
+        heights_ = gpu::TextureLayers(GL_RGBA32F, 1, 1, "no waves");
+    } else {
+        build_passes();
+        const int n = sea_.cascades.front().texels, count = int(sea_.cascades.size());
+        const std::size_t texels = std::size_t(n) * std::size_t(n);
+        h0_ = gpu::Buffer(texels * std::size_t(count) * sizeof(glm::vec4), nullptr);
+        turns_ = gpu::Buffer(texels * std::size_t(count) * sizeof(std::uint32_t), nullptr);
+        fields_ =
+            gpu::Buffer(texels * std::size_t(count * passes_.fields) * sizeof(glm::vec2), nullptr);
+        heights_ = gpu::TextureLayers(GL_RGBA32F, n, count, "waves");
+        for (int j = 0; j < count; ++j) {
+            waves::Cascade& c = sea_.cascades[std::size_t(j)];
+            glNamedBufferSubData(h0_.id(), GLintptr(texels * std::size_t(j) * sizeof(glm::vec4)),
+                                 GLsizeiptr(texels * sizeof(glm::vec4)), c.h0.data());
+            glNamedBufferSubData(turns_.id(),
+                                 GLintptr(texels * std::size_t(j) * sizeof(std::uint32_t)),
+                                 GLsizeiptr(texels * sizeof(std::uint32_t)), c.turns.data());
+        }
+        bytes_ = texels * std::size_t(count) * (20 + std::size_t(passes_.fields) * 8 + 16 * 4 / 3);
+    }
+    const GridSize map = sea_.amplitude.size;
+    amplitude_ =
+        gpu::Texture2D(GL_RGBA8, map.cols, map.rows, 1, gpu::Filter::linear, "wave amplitudes");
+    amplitude_.upload(GL_RGBA, GL_UNSIGNED_BYTE, sea_.amplitude.values.data());
+    const int columns = std::max(TARN_WAVE_LEVELS, int(sea_.sines.size()));
+    table_ = gpu::Texture2D(GL_RGBA32F, columns, table_rows, 1, gpu::Filter::nearest, "wave table");
+    table_texels_.assign(std::size_t(columns * table_rows), glm::vec4(0.0f));
+    for (std::size_t j = 0; j < sea_.cascades.size(); ++j)
+        for (int level = 0; level < TARN_WAVE_LEVELS; ++level) {
+            const waves::SlopeCovariance& s = sea_.cascades[j].unresolved[std::size_t(level)];
+            table_texels_[j * std::size_t(columns) + std::size_t(level)] = {
+                float(s.xx), float(s.xy), float(s.yy), 0.0f};
+        }
+    block_ = gpu::Buffer(sizeof(shared::WaveBlock), nullptr);
+    gpu::check_gl("uploading the waves");
+}
+
+void WaveField::move_to(double time_s) {
+    time_s_ = time_s;
+    if (sea_.cascades.empty())
+        return;
+    const int n = passes_.texels, count = int(sea_.cascades.size());
+    const glm::vec4 per_m =
+        per_cascade(sea_.cascades, [](const waves::Cascade& c) { return 1.0 / c.texel_m(); });
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_WAVE_H0, h0_.id());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_WAVE_TURNS, turns_.id());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_WAVE_FIELDS, fields_.id());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_TWIDDLES, twiddles_.id());
+    passes_.rows.use();
+    glUniform1ui(0, waves::loop_fraction(time_s, sea_.settings.loop_s));
+    set_uniform(1, per_cascade(sea_.cascades,
+                               [](const waves::Cascade& c) { return 2.0 * pi / c.patch_m; }));
+    glDispatchCompute(GLuint(n), GLuint(count), 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    passes_.columns.use();
+    glDispatchCompute(GLuint(n / lanes_for(n)), GLuint(count * passes_.fields), 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    passes_.surface.use();
+    set_uniform(0,
+                per_cascade(sea_.cascades, [](const waves::Cascade& c) { return c.choppiness; }));
+    set_uniform(1, per_cascade(sea_.cascades, [](const waves::Cascade& c) { return c.bound_m; }));
+    set_uniform(2, per_m);
+    heights_.bind_image(TARN_IMAGE_WAVE_LEVELS, GL_WRITE_ONLY, 0);
+    glDispatchCompute(groups(n, 16), groups(n, 8), GLuint(count));
+    const GLuint zero = 0;
+    glClearTexImage(limits_.id(), 0, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
+    passes_.levels.use();
+    heights_.bind(TARN_TEXTURE_WAVES);
+    limits_.bind_image(TARN_IMAGE_WAVE_LIMITS, GL_READ_WRITE);
+    set_uniform(2, per_m);
+    for (int source = 0; source + 1 < heights_.levels(); source += 4) {
+        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+        const int made = std::min(4, heights_.levels() - 1 - source);
+        for (int k = 0; k < 4; ++k)
+            heights_.bind_image(GLuint(TARN_IMAGE_WAVE_LEVELS + k), GL_WRITE_ONLY,
+                                source + 1 + std::min(k, made - 1));
+        glUniform1i(0, source);
+        glUniform1i(1, made);
+        const GLuint across = groups(std::max(n >> source, 1), 16);
+        glDispatchCompute(across, across, GLuint(count));
+    }
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+void WaveField::bind(glm::dvec2 base, double lift_m) {
+    shared::WaveBlock block{};
+    for (std::size_t j = 0; j < sea_.cascades.size(); ++j) {
+        const waves::Cascade& c = sea_.cascades[j];
+        const double half = 0.5 / c.texels; // a texel's value belongs to its middle
+        block.patches[j] = {float(fraction(base.x / c.patch_m) + half),
+                            float(fraction(base.y / c.patch_m) + half), float(c.patch_m),
+                            float(c.texel_m())};
+    }
+    double height = 0.0, slope = 0.0;
+    const std::size_t columns = table_texels_.size() / table_rows;
+    for (std::size_t i = 0; i < sea_.sines.size(); ++i) {
+        const waves::SineWave& w = sea_.sines[i];
+        const double phase = w.k_per_m.x * base.x + w.k_per_m.y * base.y + w.phase_rad -
+                             std::fmod(w.omega_per_s * time_s_, 2.0 * pi);
+        table_texels_[waves::most_cascades * columns + i] = {float(w.k_per_m.x), float(w.k_per_m.y),
+                                                             float(w.amplitude_m),
+                                                             float(std::fmod(phase, 2.0 * pi))};
+        height += w.amplitude_m;
+        slope += w.amplitude_m * std::hypot(w.k_per_m.x, w.k_per_m.y);
+    }
+    table_.upload(GL_RGBA, GL_FLOAT, table_texels_.data());
+    block.counts = {float(sea_.sines.size()), float(height), float(slope), float(lift_m)};
+    block.shore = {float(std::max(sea_.full_depth_m, 1e-6)), 0, 0, 0};
+    const GridSize map = sea_.amplitude.size;
+    const double wide = map.cols * sea_.amplitude_side_m, high = map.rows * sea_.amplitude_side_m;
+    block.map = {float((base.x - sea_.amplitude_west_m) / wide),
+                 float((sea_.amplitude_north_m - base.y) / high), float(1.0 / wide),
+                 float(-1.0 / high)};
+    block.rough = {float(sea_.roughness.xx), float(sea_.roughness.xy), float(sea_.roughness.yy), 0};
+    block_.write(&block, sizeof block);
+    glBindBufferBase(GL_UNIFORM_BUFFER, TARN_BLOCK_WAVES, block_.id());
+    heights_.bind(TARN_TEXTURE_WAVES);
+    amplitude_.bind(TARN_TEXTURE_AMPLITUDE);
+    table_.bind(TARN_TEXTURE_WAVE_TABLE);
+    limits_.bind(TARN_TEXTURE_WAVE_LIMITS);
+}
+
+double WaveField::height_at(glm::dvec2 place, double depth_m) const {
+    const double fade = std::clamp(depth_m / std::max(sea_.full_depth_m, 1e-6), 0.0, 1.0);
+    const auto share = [&](std::size_t j) {
+        const GridSize size = sea_.amplitude.size;
+        const double col = (place.x - sea_.amplitude_west_m) / sea_.amplitude_side_m - 0.5;
+        const double row = (sea_.amplitude_north_m - place.y) / sea_.amplitude_side_m - 0.5;
+        const auto at = [&](int c, int r) {
+            return sea_.amplitude[{std::clamp(c, 0, size.cols - 1),
+                                   std::clamp(r, 0, size.rows - 1)}][j] /
+                   255.0;
+        };
+        const int c = int(std::floor(col)), r = int(std::floor(row));
+        const double u = col - c, v = row - r;
+        return (at(c, r) * (1 - u) + at(c + 1, r) * u) * (1 - v) +
+               (at(c, r + 1) * (1 - u) + at(c + 1, r + 1) * u) * v;
+    };
+    double sum = 0.0;
+    for (std::size_t j = 0; j < sea_.cascades.size(); ++j) {
+        const waves::Cascade& c = sea_.cascades[j];
+        const int n = c.texels;
+        const double x = fraction(place.x / c.patch_m) * n, y = fraction(place.y / c.patch_m) * n;
+        const int i = int(x) % n, k = int(y) % n;
+        const double u = x - std::floor(x), v = y - std::floor(y);
+        float corner[4];
+        for (int q = 0; q < 4; ++q) // one texel each: the corners may lie on opposite edges
+            glGetTextureSubImage(heights_.id(), 0, (i + q % 2) % n, (k + q / 2) % n, GLint(j), 1, 1,
+                                 1, GL_RED, GL_FLOAT, sizeof corner[q], &corner[q]);
+        sum += share(j) * ((corner[0] * (1 - u) + corner[1] * u) * (1 - v) +
+                           (corner[2] * (1 - u) + corner[3] * u) * v);
+    }
+    for (const waves::SineWave& w : sea_.sines)
+        sum += share(0) * w.amplitude_m *
+               std::cos(w.k_per_m.x * place.x + w.k_per_m.y * place.y + w.phase_rad -
+                        std::fmod(w.omega_per_s * time_s_, 2.0 * pi));
+    return fade * sum;
+}
+
+std::vector<glm::vec4> WaveField::read(int cascade) const {
+    const std::size_t texels = std::size_t(heights_.side_px()) * std::size_t(heights_.side_px());
+    std::vector<glm::vec4> all(texels * std::size_t(heights_.layers()));
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    heights_.download(0, GL_RGBA, GL_FLOAT, all.data(), all.size() * sizeof all[0]);
+    gpu::check_gl("reading the waves");
+    const auto first = all.begin() + std::ptrdiff_t(texels * std::size_t(cascade));
+    return {first, first + std::ptrdiff_t(texels)};
+}
+
+} // namespace tarn::render

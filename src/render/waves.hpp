@@ -1,0 +1,62 @@
+#pragma once
+/// @file waves.hpp  A sea on the GPU: transforms its spectra, keeps the textures that the tracer
+/// reads.
+#include "gpu/objects.hpp"
+#include "gpu/shader.hpp"
+#include "waves/sea.hpp"
+
+#include "shared/wave_block.h"
+
+#include <glm/vec2.hpp>
+#include <optional>
+#include <string>
+
+namespace tarn::render {
+
+/// The context must stay current.
+class WaveField {
+public:
+    /// Uploads a sea; where there is one already, it is replaced.
+    void set(waves::Sea sea);
+    const waves::Sea& sea() const { return sea_; }
+
+    /// Makes height and slope of every cascade for a time. Costs nothing for sines.
+    void move_to(double time_s);
+
+    /// Binds block and textures.
+    /// @param base      where positions count from: a node of the ground [scene metres]
+    /// @param lift_m    how much the walk's water is raised, >= sea().bound_m
+    void bind(glm::dvec2 base, double lift_m);
+
+    /// Height above the level at a place of the scene, unfiltered, at the time of move_to(). Waits
+    /// for the GPU.
+    double height_at(glm::dvec2 place_m, double depth_m) const;
+
+    /// What a program that draws this sea must define.
+    std::string defines() const;
+
+    /// Level 0 of a cascade: height [m], slope east, slope north, least eigenvalue of the
+    /// displacement's Jacobian; texels^2, row = y.
+    std::vector<glm::vec4> read(int cascade) const;
+    /// GPU memory of spectra, transforms and textures.
+    std::size_t bytes() const { return bytes_; }
+
+private:
+    struct Passes {
+        int texels = 0, fields = 0;
+        gpu::ComputeProgram rows, columns, surface, levels;
+    };
+
+    void build_passes();
+
+    waves::Sea sea_;
+    Passes passes_;
+    gpu::Buffer h0_, turns_, fields_, twiddles_, block_;
+    gpu::TextureLayers heights_;
+    gpu::Texture2D amplitude_, table_, limits_;
+    std::vector<glm::vec4> table_texels_;
+    double time_s_ = 0.0;
+    std::size_t bytes_ = 0;
+};
+
+} // namespace tarn::render
