@@ -85,6 +85,14 @@ SlopePoint slope_point(vec2 mean, vec3 covariance, int number) {
     return SlopePoint(mean + vec2(a * step.x, b * step.x + c * step.y), chance.x * chance.y);
 }
 
+// slope_lot — one slope drawn from the distribution, by two even numbers in [0, 1) (Box & Muller 1958).
+vec2 slope_lot(vec2 mean, vec3 covariance, vec2 even) {
+    float a = sqrt(max(covariance.x, 1e-12)), b = covariance.y / a;
+    float c = sqrt(max(covariance.z - b * b, 0.0)), turn = 6.28318530718 * even.y;
+    vec2 lot = sqrt(-2.0 * log(max(1.0 - even.x, 1e-7))) * vec2(cos(turn), sin(turn));
+    return mean + vec2(a * lot.x, b * lot.x + c * lot.y);
+}
+
 // facing — projected size of a facet with that slope, towards a viewer: what weights it in the mean.
 float facing(vec3 to_viewer, vec2 slope) { return max(dot(to_viewer, vec3(-slope, 1.0)), 0.0); }
 

@@ -7,6 +7,7 @@
 #include "lib/walks/chosen.glsl"
 #ifdef TARN_WAVES
 #include "lib/walks/meet_waves.glsl"
+#include "lib/noise.glsl"
 #endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -71,7 +72,15 @@ void store(ivec2 pixel, Part part, float limit, float overlay_t, bool found, Hit
 }
 
 #ifdef TARN_WAVES
-// The surface where the waves were met, for the passes that follow; returns its level.
+// Two even numbers for a pixel: from sample to sample they fill the square evenly (Roberts' R2 sequence).
+vec2 even_numbers(ivec2 pixel) {
+    uint h = lattice_hash(pixel, 91u);
+    vec2 start = vec2(h & 0xffffu, h >> 16) / 65536.0;
+    return fract(start + view.offset.z * vec2(0.7548776662, 0.5698402910));
+}
+
+// The surface where the waves were met, for the passes that follow; returns its level. Its slope is one of
+// those inside the pixel: mirrored and refracted rays go where facets send them, not where their mean would.
 float store_surface(ivec2 pixel, Part part, Hit hit) {
     vec4 ground = textureGather(heights, (vec2(hit.cell) + 1.0) * view.inverse_size.xy, 0) * view.heights.y;
     float coded = texelFetch(heights, hit.cell, 0).g * view.heights.w + view.heights.z;
@@ -82,7 +91,7 @@ float store_surface(ivec2 pixel, Part part, Hit hit) {
     float footprint = wave_footprint(view.camera.w, hit.t, part.direction.z);
     vec3 taken;
     vec2 slope = wave_slopes(wave_heights, wave_table, waves, at, footprint, amplitude, taken);
-    imageStore(surfaces, pixel - view.tile.xy, vec4(slope, level, 0.0));
+    imageStore(surfaces, pixel - view.tile.xy, vec4(slope_lot(slope, taken, even_numbers(pixel)), level, 0.0));
     return level;
 }
 

@@ -123,6 +123,7 @@ struct Glitter {
     vec3 sky;      // radiance of the sky mirrored, reflectance in it
     float mirror;  // mean reflectance
     vec3 sun;      // radiance of the sun mirrored
+    float lot;     // weight of the one slope that rays were sent by
 };
 
 Glitter glitter_of(Part first, End end, Surface surface) {
@@ -132,13 +133,13 @@ Glitter glitter_of(Part first, End end, Surface surface) {
     vec4 amplitude = wave_fade(waves, surface.level - bilinear(ground, end.inside)) * wave_amplitude(amplitudes, waves, at);
     float footprint = view.camera.w * end.t * inversesqrt(max(abs(first.direction.z), 0.02)); // meet_waves.glsl
     vec3 taken;
-    wave_slopes(wave_heights, wave_table, waves, at, footprint, amplitude, taken);
+    vec2 mean = wave_slopes(wave_heights, wave_table, waves, at, footprint, amplitude, taken);
     vec3 to_viewer = -first.direction;
     bool schlick = on(TARN_FLAG_SCHLICK);
     float eta = 1.0 / view.attenuation.w, seen = 0.0;
-    Glitter g = Glitter(vec3(0.0), 0.0, vec3(0.0));
+    Glitter g = Glitter(vec3(0.0), 0.0, vec3(0.0), 0.0);
     for (int i = 0; i < 9; ++i) {
-        SlopePoint point = slope_point(surface.slope, taken, i);
+        SlopePoint point = slope_point(mean, taken, i);
         float size = facing(to_viewer, point.slope), weight = point.chance * size;
         vec3 normal = normal_of_slope(point.slope);
         float cosine = clamp(dot(to_viewer, normal), 0.0, 1.0);
@@ -152,13 +153,14 @@ Glitter glitter_of(Part first, End end, Surface surface) {
     float least = max(seen, 1e-4);
     g.mirror = seen > 0.0 ? g.mirror / least : 1.0;
     g.sky /= least;
+    g.lot = facing(to_viewer, surface.slope) / least;
     if (on(TARN_FLAG_SUN_DISC) && (end.flags & end_lit) != 0u) {
         // Cox & Munk 1954: the share of facets that throw the sun into the eye. The sun's own width, seen in a
         // mirror, is half of it in slope.
         vec3 halfway = normalize(to_viewer + view.sun.xyz);
         vec2 needed = -halfway.xy / halfway.z;
         float width = 0.0625 * view.sun.w * view.sun.w;
-        float chance = slope_density(needed - surface.slope, taken + vec3(width, 0.0, width));
+        float chance = slope_density(needed - mean, taken + vec3(width, 0.0, width));
         float cosine = clamp(dot(to_viewer, halfway), 0.0, 1.0);
         float mirror = schlick ? fresnel_schlick(cosine, eta) : fresnel_dielectric(cosine, eta);
         float up2 = halfway.z * halfway.z;
@@ -199,12 +201,14 @@ void main() {
             if (!first.in_water) {
                 if (number == 2) {
                     part.weight = (1.0 - glitter.mirror) / (view.attenuation.w * view.attenuation.w);
-                } else if ((end.flags & end_ground) != 0u) {
-                    part.weight = glitter.mirror;
-                    radiance += remaining * glitter.sun;
                 } else {
+                    // The sky's mean is known; where the ray met land instead, that takes the place of
+                    // the sky in its direction.
                     radiance += remaining * (glitter.sky + glitter.sun);
-                    continue;
+                    if ((end.flags & end_ground) == 0u)
+                        continue;
+                    part.weight *= glitter.lot;
+                    radiance -= remaining * part.weight * sky_radiance(sky_table, part.direction, view.sun.xyz);
                 }
             }
 #endif

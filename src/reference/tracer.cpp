@@ -10,9 +10,11 @@
 #include "reference/sky.hpp"
 #include "reference/sunlight.hpp"
 #include "reference/surface.hpp"
+#include "reference/waves.hpp"
 
 #include <cmath>
 #include <limits>
+#include <random>
 #include <tbb/parallel_for.h>
 
 namespace tarn::reference {
@@ -32,6 +34,22 @@ struct Lake {
     bool bed_known;
 };
 
+/// Where a ray met water or ground.
+struct Meeting {
+    Hit hit;
+    double level_m = 0.0;       ///< of the water
+    glm::dvec2 slope{0.0, 0.0}; ///< of its surface there
+};
+
+/// Two independent normal numbers for a pixel's sample: slopes of waves too short to be drawn.
+glm::dvec2 normal_pair(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    std::seed_seq seed{a, b, c};
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    const double first = normal(random);
+    return {first, normal(random)};
+}
+
 class Tracer {
 public:
     Tracer(const scene::Scene& scene, const scene::View& view)
@@ -50,25 +68,165 @@ public:
             sun_share_below(sun, sun_below_, index_, settings_.fresnel == scene::Fresnel::schlick);
         if (scene.ortho)
             photo_ = Photo(*scene.ortho);
+        if (!view.waves.calm()) {
+            waves::Settings settings = view.waves;
+            settings.time_s = 0.0;
+            sea_ = waves::make_sea(scene.ground, scene.water, scene.lakes, settings);
+            if (!sea_.still()) {
+                waves_.emplace(sea_, view.waves.time_s);
+                raised_ = scene.water;
+                raised_.offset_m += waves_->bound_m();
+            }
+        }
         const glm::dvec3& p = camera_.position;
         const auto water = scene.water_level_m(p.x, p.y);
-        if (water && p.z < *water)
+        const double eta =
+            waves_ && water
+                ? waves_->height_m({p.x, p.y}, *water - scene.ground.elevation_m(p.x, p.y))
+                : 0.0;
+        if (water && p.z < *water + eta)
             camera_lake_ = Lake{*water, scene.lake_at_level(*water).bed != Bed::unknown};
     }
 
     /// Radiance towards the camera through one place of the picture, and the first distance.
-    glm::dvec3 look(glm::dvec2 place, double& distance) const {
+    /// @param lot  two normal numbers: which of the slopes too small to be drawn
+    glm::dvec3 look(glm::dvec2 place, double& distance, glm::dvec2 lot) const {
         const glm::dvec3 direction =
             pixel_direction(camera_.forward, camera_.right, camera_.up, half_tangent_, place);
         if (camera_lake_)
-            return in_water(camera_.position, direction, *camera_lake_, 0.0, true, &distance);
-        return in_air(camera_.position, direction, 0.0, true, &distance);
+            return in_water(camera_.position, direction, *camera_lake_, 0.0, &distance, lot);
+        return in_air(camera_.position, direction, 0.0, &distance, lot);
     }
 
 private:
-    Split split(glm::dvec3 direction, bool from_water) const {
-        return split_at_surface(direction, {0, 0, 1}, index_, from_water,
-                                settings_.fresnel == scene::Fresnel::schlick);
+    Split split(glm::dvec3 direction, const Meeting& at, bool from_water, glm::dvec2 lot) const {
+        glm::dvec2 slope = at.slope;
+        if (waves_) {
+            const waves::SlopeCovariance& r = sea_.roughness;
+            const double a = std::sqrt(r.xx), b = a > 0.0 ? r.xy / a : 0.0;
+            slope +=
+                glm::dvec2(a * lot.x, b * lot.x + std::sqrt(std::max(r.yy - b * b, 0.0)) * lot.y);
+        }
+        return split_at_surface(direction, glm::normalize(glm::dvec3(-slope, 1.0)), index_,
+                                from_water, settings_.fresnel == scene::Fresnel::schlick);
+    }
+
+    /// Level of the water that is over or under a place, also beside the shore where the surface
+    /// would go on in the ground.
+    std::optional<double> level_at(glm::dvec3 p) const {
+        const Heightfield& w = scene_.water;
+        const double col = w.col(p.x), row = w.row(p.y);
+        if (!(col >= 0.0 && row >= 0.0 && col <= w.size().cols - 1 && row <= w.size().rows - 1))
+            return {};
+        const int c = std::min(int(col), w.size().cols - 2),
+                  r = std::min(int(row), w.size().rows - 2);
+        for (int k = 0; k < 4; ++k)
+            if (w.codes[{c + k % 2, r + k / 2}] == no_water_code)
+                return {};
+        return w.elevation_m(p.x, p.y);
+    }
+
+    /// The first of ground and moving water along a ray that has come near the water, by small
+    /// steps and halving. `t` on return without a hit: where the ray has left the slab.
+    std::optional<Meeting> through_slab(glm::dvec3 origin, glm::dvec3 direction, double& t,
+                                        double t_end, bool from_air) const {
+        const double bound = waves_->bound_m(), side = from_air ? 1.0 : -1.0;
+        const auto at = [&](double s) { return origin + s * direction; };
+        // > 0 while the ray is in the medium that it came from.
+        const auto over_water = [&](double s, std::optional<double>& level) {
+            const glm::dvec3 p = at(s);
+            level = level_at(p);
+            if (!level)
+                return 1e9;
+            const double depth = *level - scene_.ground.elevation_m(p.x, p.y);
+            return side * (p.z - *level - waves_->height_m({p.x, p.y}, depth));
+        };
+        const auto over_ground = [&](double s) {
+            const glm::dvec3 p = at(s);
+            return p.z - scene_.ground.elevation_m(p.x, p.y);
+        };
+        const double pace = std::max(std::hypot(direction.x, direction.y), 1e-9);
+        // Neither the waves nor their fading by the shore can close a gap faster than this; the
+        // shortest step is a twentieth of a texel.
+        const double shortest = waves_->step_m() / pace;
+        const double closing =
+            std::abs(direction.z) + pace * (waves_->steepest() + 2.0 * bound / sea_.full_depth_m);
+        std::optional<double> level, next_level;
+        double water = over_water(t, level);
+        if (water <= 0.0)
+            return finish(at(t), t, *level);
+        while (t < t_end) {
+            const double step = std::max(
+                shortest, std::min(water / closing, 0.25 * scene_.ground.spacing_m / pace));
+            const double next = std::min(t + step, t_end);
+            const double next_water = over_water(next, next_level), next_ground = over_ground(next);
+            if (next_water <= 0.0 || next_ground <= 0.0) {
+                const auto bisect = [&](auto&& f) {
+                    double low = t, high = next;
+                    for (int i = 0; i < 60; ++i) {
+                        const double middle = 0.5 * (low + high);
+                        (f(middle) > 0.0 ? low : high) = middle;
+                    }
+                    return high;
+                };
+                std::optional<double> ignored;
+                const double s_water =
+                    next_water <= 0.0 ? bisect([&](double s) { return over_water(s, ignored); })
+                                      : 1e30;
+                const double s_ground = next_ground <= 0.0 ? bisect(over_ground) : 1e30;
+                if (s_water < s_ground) {
+                    over_water(s_water, next_level);
+                    return finish(at(s_water), s_water, next_level.value_or(level.value_or(0.0)));
+                }
+                return Meeting{hit_at(at(s_ground), s_ground, false), 0.0, {0.0, 0.0}};
+            }
+            t = next;
+            water = next_water;
+            level = next_level;
+            if (side * direction.z > 0.0 && (!level || side * (at(t).z - *level) > bound))
+                return {};
+            const double col = scene_.ground.col(at(t).x), row = scene_.ground.row(at(t).y);
+            if (col < 0.0 || row < 0.0 || col > scene_.ground.size().cols - 1 ||
+                row > scene_.ground.size().rows - 1)
+                return {};
+        }
+        return {};
+    }
+
+    Hit hit_at(glm::dvec3 p, double t, bool water) const {
+        return {t, water, scene_.ground.col(p.x), scene_.ground.row(p.y), p};
+    }
+
+    Meeting finish(glm::dvec3 p, double t, double level) const {
+        const double depth = level - scene_.ground.elevation_m(p.x, p.y);
+        return {hit_at(p, t, true), level, waves_->slope({p.x, p.y}, depth)};
+    }
+
+    /// The first of ground and water in the air.
+    std::optional<Meeting> meet_in_air(glm::dvec3 origin, glm::dvec3 direction,
+                                       bool with_water) const {
+        if (!with_water || !waves_) {
+            const auto hit = trace_field(scene_.ground, with_water ? &scene_.water : nullptr,
+                                         origin, direction, infinity);
+            if (!hit)
+                return {};
+            return Meeting{*hit, hit->point.z, {0.0, 0.0}};
+        }
+        double t = 0.0;
+        while (true) {
+            const auto hit =
+                trace_field(scene_.ground, &raised_, origin + t * direction, direction, infinity);
+            if (!hit)
+                return {};
+            if (!hit->water)
+                return Meeting{hit_at(hit->point, t + hit->t, false), 0.0, {0.0, 0.0}};
+            t += hit->t;
+            const double before = t;
+            if (const auto met = through_slab(origin, direction, t, 1e7, true))
+                return met;
+            if (!(t > before) || t >= 1e7)
+                return {};
+        }
     }
 
     glm::dvec3 sky(glm::dvec3 direction) const {
@@ -172,37 +330,77 @@ private:
     }
 
     /// Radiance arriving at `origin` from `direction`, both in the air.
-    /// @param may_split  whether a water surface is looked for
-    glm::dvec3 in_air(glm::dvec3 origin, glm::dvec3 direction, double before_m, bool may_split,
-                      double* distance) const {
-        const auto hit = trace_field(scene_.ground, may_split ? &scene_.water : nullptr, origin,
-                                     direction, infinity);
+    /// @param lot  none: no water surface is looked for
+    glm::dvec3 in_air(glm::dvec3 origin, glm::dvec3 direction, double before_m, double* distance,
+                      std::optional<glm::dvec2> lot) const {
+        const auto met = meet_in_air(origin, direction, lot.has_value());
         if (distance)
-            *distance = hit ? hit->t : infinity;
-        if (!hit)
+            *distance = met ? met->hit.t : infinity;
+        if (!met)
             return sky(direction);
-        if (!hit->water)
-            return land(*hit, direction, pixel_rad_ * (before_m + hit->t));
-        const Lake lake{hit->point.z, scene_.lake_at_level(hit->point.z).bed != Bed::unknown};
-        const Split at = split(direction, false);
+        const Hit& hit = met->hit;
+        if (!hit.water)
+            return land(hit, direction, pixel_rad_ * (before_m + hit.t));
+        const Lake lake{met->level_m, scene_.lake_at_level(met->level_m).bed != Bed::unknown};
+        const Split at = split(direction, *met, false, *lot);
         glm::dvec3 out(0.0);
         if (settings_.reflection)
-            out += at.mirror * in_air(hit->point, at.reflected, before_m + hit->t, false, nullptr);
-        if (settings_.refraction)
-            out += at.through *
-                   in_water(hit->point, at.refracted, lake, before_m + hit->t, false, nullptr);
+            out += at.mirror * in_air(hit.point, at.reflected, before_m + hit.t, nullptr, {});
+        if (settings_.refraction && at.mirror < 1.0)
+            out +=
+                at.through * in_water(hit.point, at.refracted, lake, before_m + hit.t, nullptr, {});
         return out;
+    }
+
+    /// The first of bed and moving surface for a ray that starts in the water.
+    std::optional<Meeting> meet_in_water(glm::dvec3 origin, glm::dvec3 direction, const Lake& lake,
+                                         double reach) const {
+        const double below = lake.level_m - waves_->bound_m() - origin.z;
+        double t = 0.0;
+        if (below > 0.0) {
+            const double to_slab = direction.z > 1e-6 ? below / direction.z : infinity;
+            const auto hit = trace_field(scene_.ground, nullptr, origin, direction,
+                                         std::min(to_slab, reach), bottom_m_);
+            if (hit)
+                return Meeting{*hit, 0.0, {0.0, 0.0}};
+            if (to_slab >= reach)
+                return {};
+            t = to_slab;
+        }
+        if (auto met = through_slab(origin, direction, t, reach, false))
+            return met;
+        if (t >= reach || direction.z >= 0.0)
+            return {};
+        const auto hit = trace_field(scene_.ground, nullptr, origin + t * direction, direction,
+                                     reach - t, bottom_m_);
+        if (!hit)
+            return {};
+        return Meeting{hit_at(hit->point, t + hit->t, false), 0.0, {0.0, 0.0}};
     }
 
     /// The same under water.
     glm::dvec3 in_water(glm::dvec3 origin, glm::dvec3 direction, const Lake& lake, double before_m,
-                        bool may_split, double* distance) const {
+                        double* distance, std::optional<glm::dvec2> lot) const {
         const double depth = std::max(lake.level_m - origin.z, 0.0);
-        const double to_surface = direction.z > 1e-6 ? depth / direction.z : infinity;
-        const double reach = std::min(to_surface, longest_path_m_);
+        double to_surface = direction.z > 1e-6 ? depth / direction.z : infinity;
         std::optional<Hit> hit;
-        if (lake.bed_known)
-            hit = trace_field(scene_.ground, nullptr, origin, direction, reach, bottom_m_);
+        Meeting surface{{}, lake.level_m, {0.0, 0.0}};
+        if (waves_ && lot) {
+            to_surface = infinity;
+            const auto met = lake.bed_known
+                                 ? meet_in_water(origin, direction, lake, longest_path_m_)
+                                 : std::optional<Meeting>();
+            if (met && met->hit.water) {
+                to_surface = met->hit.t;
+                surface = *met;
+            } else if (met) {
+                hit = met->hit;
+            }
+        } else if (lake.bed_known) {
+            hit = trace_field(scene_.ground, nullptr, origin, direction,
+                              std::min(to_surface, longest_path_m_), bottom_m_);
+        }
+        const double reach = std::min(to_surface, longest_path_m_);
         const double length = hit ? hit->t : reach;
         const bool at_surface = !hit && to_surface <= longest_path_m_;
         if (distance)
@@ -218,16 +416,17 @@ private:
         const glm::dvec3 left = transmittance(attenuation_, length);
         if (hit)
             return out + left * bed(*hit, lake.level_m, pixel_rad_ * (before_m + length));
-        if (!at_surface || !may_split)
+        if (!at_surface || !lot)
             return out;
         glm::dvec3 top = origin + length * direction;
-        top.z = lake.level_m;
-        const Split at = split(direction, true);
+        if (!waves_)
+            top.z = lake.level_m;
+        const Split at = split(direction, surface, true, *lot);
         if (settings_.reflection)
             out += left * at.mirror *
-                   in_water(top, at.reflected, lake, before_m + length, false, nullptr);
+                   in_water(top, at.reflected, lake, before_m + length, nullptr, {});
         if (settings_.refraction && at.mirror < 1.0)
-            out += left * at.through * in_air(top, at.refracted, before_m + length, false, nullptr);
+            out += left * at.through * in_air(top, at.refracted, before_m + length, nullptr, {});
         return out;
     }
 
@@ -243,6 +442,9 @@ private:
     glm::dvec3 sun_below_{0, 0, 1}, sun_irradiance_below_{0.0};
     Photo photo_;
     std::optional<Lake> camera_lake_;
+    waves::Sea sea_;
+    std::optional<WaveSurface> waves_;
+    Heightfield raised_; ///< the water, as high as its waves may come
 };
 
 } // namespace
@@ -265,7 +467,11 @@ Image trace(const scene::Scene& scene, const scene::View& view, const Progress& 
                 for (int s = 0; s < settings.samples; ++s) {
                     const glm::dvec2 offset = scene::sample_offset(s, settings.samples);
                     double distance = 0.0;
-                    sum += tracer.look({(x + offset.x) / w, (y + offset.y) / h}, distance);
+                    const glm::dvec2 lot =
+                        view.waves.calm()
+                            ? glm::dvec2(0.0)
+                            : normal_pair(std::uint32_t(x), std::uint32_t(y), std::uint32_t(s));
+                    sum += tracer.look({(x + offset.x) / w, (y + offset.y) / h}, distance, lot);
                     if (s == 0)
                         out.distance_m[i] = static_cast<float>(distance);
                 }
