@@ -3,8 +3,8 @@
 // Reads fields; writes level 0 of the waves' texture. One invocation a texel and cascade (z).
 //
 // Choppy water (Tessendorf 2001, sec. 3.5): the point over x came from x' with x' + choppiness D(x') = x, found
-// by repeated substitution, which converges while no fold is near; `choppiness` is bounded to keep it so
-// (src/waves/sea.hpp). Whatever happens, there is one height over each place. Slopes are those of the
+// by repeated substitution and Newton's method. There is one such point while nothing folds; `choppiness` is
+// bounded to keep it so (src/waves/sea.hpp). Whatever happens, there is one height over each place. Slopes are those of the
 // displaced surface: the transposed inverse of the Jacobian times the spectral derivative.
 #include "shared/wave_block.h"
 #ifndef TARN_FFT_N
@@ -44,8 +44,18 @@ void main() {
 #if TARN_WAVE_FIELDS == 4
     float chop = choppiness[cascade], scale = chop * per_m[cascade];
     vec2 from = vec2(texel);
-    for (int i = 0; i < 5; ++i)
-        from = vec2(texel) - scale * sampled(cascade, 2u, from);
+    for (int i = 0; i < 10; ++i) {
+        vec2 off = vec2(texel) - from - scale * sampled(cascade, 2u, from);
+        if (dot(off, off) < 1e-4) // a hundredth of a texel
+            break;
+        if (i >= 2) { // where substitution is slow, the displacement's own slope helps (Newton)
+            float xy = chop * sampled(cascade, 0u, from).y;
+            vec2 diagonal = 1.0 + chop * sampled(cascade, 3u, from);
+            off = vec2(diagonal.y * off.x - xy * off.y, diagonal.x * off.y - xy * off.x) /
+                  max(diagonal.x * diagonal.y - xy * xy, 0.05);
+        }
+        from += off;
+    }
     vec2 height_and_xy = sampled(cascade, 0u, from), diagonal = sampled(cascade, 3u, from);
     slope = sampled(cascade, 1u, from);
     float xx = 1.0 + chop * diagonal.x, yy = 1.0 + chop * diagonal.y, xy = chop * height_and_xy.y;

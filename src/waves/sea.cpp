@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <span>
 
 namespace tarn::waves {
 
@@ -151,10 +152,11 @@ std::vector<Cascade> lay_out(const Spectrum& spectrum, const Settings& settings)
         c.high_k = std::min(to_k, 0.5 * pi * n / patch_m); // four texels a wave
         out.push_back(c);
     };
-    const double side = settings.patch_m.value_or(std::min(64.0, n / 5.0) * peak_m);
+    // Twelve texels for the wave at the peak.
+    const double side = settings.patch_m.value_or(std::min(48.0, n / 12.0) * peak_m);
     double from = low;
     if (count == 1) {
-        add(settings.patch_m.value_or(std::min(32.0, n / 10.0) * peak_m), low, high);
+        add(settings.patch_m.value_or(std::min(24.0, n / 16.0) * peak_m), low, high);
         return out;
     }
     const double first_top = std::min(0.5 * pi * n / side, 1.15 * spectrum.peak_k());
@@ -173,25 +175,54 @@ std::vector<Cascade> lay_out(const Spectrum& spectrum, const Settings& settings)
     return out;
 }
 
-/// The list's waves for the lattices of patches that have eight texels for the shortest.
+/// How far, relative to their own, wave vectors are from the lattice of a patch; by their power.
+double misfit(std::span<const PlaneWave> waves, double patch_m) {
+    double sum = 0.0, weight = 1e-30;
+    for (const PlaneWave& w : waves) {
+        const double turns = patch_m / w.length_m, a = w.towards_deg * pi / 180.0;
+        const double x = turns * std::sin(a), y = turns * std::cos(a),
+                     power = w.amplitude_m * w.amplitude_m;
+        const double off = std::hypot(x - std::round(x), y - std::round(y)) / turns;
+        sum += power * off * off;
+        weight += power;
+    }
+    return std::sqrt(sum / weight);
+}
+
+/// The list's waves on the lattices of patches, long ones first; a patch holds eight of its longest
+/// side by side and has eight texels for its shortest. Within that its side is the one that the
+/// waves' vectors fit best: one wave fits as it is.
 std::vector<Cascade> lay_out_list(const std::vector<PlaneWave>& list, const Settings& settings,
-                                  double depth_m) {
+                                  double depth_m, double& worst_misfit) {
     std::vector<PlaneWave> waves = list;
     std::sort(waves.begin(), waves.end(),
               [](const PlaneWave& a, const PlaneWave& b) { return a.length_m > b.length_m; });
     std::vector<Cascade> out;
     const int n = settings.texels;
     std::size_t next = 0;
+    worst_misfit = 0.0;
     while (next < waves.size() && int(out.size()) < settings.cascades) {
         Cascade c;
         c.texels = n;
         const bool last = int(out.size()) + 1 == settings.cascades;
         const double longest = waves[next].length_m;
-        const double shortest = last ? waves.back().length_m : longest * 32.0 / n;
-        // A whole number of the longest waves, at least four: a single wave along an axis fits.
-        const double wanted =
-            std::max(n * std::max(shortest, longest * 32.0 / n) / 8.0, 4.0 * longest);
-        c.patch_m = settings.patch_m.value_or(std::round(wanted / longest) * longest);
+        const double shortest = last ? waves.back().length_m : longest * 64.0 / n;
+        std::size_t end = next;
+        while (end < waves.size() && (last || waves[end].length_m >= shortest))
+            ++end;
+        const std::span<const PlaneWave> these(&waves[next], end - next);
+        const double least = 8.0 * longest, most = std::max(2.0 * least, n * shortest / 8.0);
+        double best = 1e9;
+        for (int i = 0; i < 20'000 && best > 1e-9 && !settings.patch_m; ++i) {
+            const double side = least * std::pow(most / least, i / 20'000.0);
+            const double off = misfit(these, side) * (1.0 + 0.2 * i / 20'000.0); // rather small
+            if (off < best) {
+                best = off;
+                c.patch_m = side;
+            }
+        }
+        c.patch_m = settings.patch_m.value_or(c.patch_m);
+        worst_misfit = std::max(worst_misfit, misfit(these, c.patch_m));
         c.h0.assign(std::size_t(n) * std::size_t(n), glm::vec4(0.0f));
         const double dk = 2.0 * pi / c.patch_m;
         double steepness = 0.0, height = 0.0;
@@ -451,8 +482,12 @@ Sea make_sea(const Heightfield& ground, const Heightfield& water,
             }
         }
         if (settings.model == Model::gerstner) {
+            double off = 0.0;
             sea.cascades = lay_out_list(windy ? pick_waves(spectrum, settings.seed) : settings.list,
-                                        settings, depth_m);
+                                        settings, depth_m, off);
+            if (off > 0.005 && !windy)
+                note(text("wave vectors of the list are drawn as the patches' lattices have them, ",
+                          fixed(100.0 * off, 1), " % off (rms)"));
         } else {
             sea.cascades = lay_out(spectrum, settings);
             std::uint32_t number = 0;

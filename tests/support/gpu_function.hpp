@@ -22,8 +22,10 @@ public:
     /// @param library  e.g. "lib/fresnel.glsl"
     /// @param body     GLSL statements that read `vec4 x, y` and set `vec4 result`
     /// @param head     further declarations, before main()
-    GpuFunction(const std::string& library, const std::string& body, const std::string& head = "")
-        : program_((context(), source(library, body, head))) {}
+    /// @param defined  lines before the library, "#define NAME VALUE\n" each
+    GpuFunction(const std::string& library, const std::string& body, const std::string& head = "",
+                const std::string& defined = "")
+        : program_((context(), source(library, body, head, defined))) {}
 
     std::vector<glm::vec4> operator()(const std::vector<glm::vec4>& x,
                                       const std::vector<glm::vec4>& y = {}) const {
@@ -45,10 +47,10 @@ public:
 
 private:
     static gpu::ShaderSource source(const std::string& library, const std::string& body,
-                                    const std::string& head) {
+                                    const std::string& head, const std::string& defined) {
         return gpu::expand_shader(
             TARN_SHADER_ROOT,
-            text("#version 450 core\n#include \"", library, "\"\n",
+            text("#version 450 core\n", defined, "#include \"", library, "\"\n",
                  "layout(local_size_x = 64) in;\n"
                  "layout(binding = 5, std430) readonly buffer In { vec4 xs[]; };\n"
                  "layout(binding = 6, std430) readonly buffer In2 { vec4 ys[]; };\n"
