@@ -27,6 +27,7 @@ namespace {
 
 struct Words {
     DemWords dem;
+    ViewWords waves; ///< only its waves are asked for
     std::string level = "auto", lakes = "all", bathymetry, soundings, ortho, scene;
     std::string bathymetry_kind = "auto", bed = "auto";
 };
@@ -79,6 +80,7 @@ int run_import(Words& words) {
     const auto sun = sun_direction(scene, geo::default_time(lake.position));
     for (const std::string& name : scene::preset_names())
         scene.cameras.push_back({name, scene::preset_camera(scene, lake, name, sun, 16.0 / 9.0)});
+    scene.waves = make_waves(words.waves, scene);
     scene.validate();
 
     progress.report(0.95, "writing");
@@ -150,6 +152,7 @@ void add_import(CLI::App& app, Run& run) {
         ->check(CLI::IsMember({"auto", "measured", "unknown"}))
         ->capture_default_str();
     c->add_option("--ortho", words->ortho, "aerial picture to drape over the land");
+    add_wave_options(*c, words->waves);
     c->add_option("--name", options.name, "name of the lake");
     c->footer(
         "Examples:\n"

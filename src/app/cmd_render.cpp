@@ -51,6 +51,16 @@ double choose_exposure(const Words& words, const Image& picture, const scene::Sc
                                 usual * (dive ? 400.0 : 2.0));
 }
 
+std::string describe_waves(const waves::Settings& s) {
+    std::string out = waves::name_of(s.model);
+    if (s.model == waves::Model::calm)
+        return out;
+    for (const waves::PlaneWave& w : s.list)
+        out += text("; ", w.amplitude_m, ",", w.length_m, ",", w.towards_deg, ",", w.phase_rad);
+    return out + text("; wind ", s.wind_m_per_s, " m/s from ", s.wind_from_deg, " (grid); time ",
+                      s.time_s, " s of ", s.loop_s, "; seed ", s.seed);
+}
+
 image::Metadata describe(const scene::Scene& scene, const scene::View& view,
                          const std::string& device) {
     const LakeRecord& lake =
@@ -77,6 +87,7 @@ image::Metadata describe(const scene::Scene& scene, const scene::View& view,
         {"tarn:water",
          text(scene.optics.name, "; a ", triple(scene.optics.absorption_per_m), " /m; b_b ",
               triple(scene.optics.backscattering_per_m), " /m; n ", scene.optics.index)},
+        {"tarn:waves", describe_waves(view.waves)},
         {"tarn:renderer", device},
         {"tarn:command", command_line()}};
 }

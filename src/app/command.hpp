@@ -14,6 +14,7 @@ void add_import(CLI::App& app, Run& run);
 void add_detect(CLI::App& app, Run& run);
 void add_info(CLI::App& app, Run& run);
 void add_stats(CLI::App& app, Run& run);
+void add_waves(CLI::App& app, Run& run);
 void add_render(CLI::App& app, Run& run);
 void add_bench(CLI::App& app, Run& run);
 void add_doctor(CLI::App& app, Run& run);

@@ -6,6 +6,7 @@
 #include "geo/frame.hpp"
 #include "geo/sun.hpp"
 #include "scene/presets.hpp"
+#include "waves/wind_rose.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -141,6 +142,10 @@ void add_wave_options(CLI::App& c, ViewWords& w) {
                  text("speed of the wind at 10 m [m/s]; default ", usual.wind_m_per_s));
     c.add_option("--wind-from", w.wind_from,
                  text("where it comes from [deg from true north]; default ", usual.wind_from_deg));
+    c.add_option(
+        "--wind-rose", w.wind_rose,
+        "file with direction [deg], speed [m/s] and frequency of each class of wind: the most "
+        "frequent one blows");
     c.add_option("--wave-time", w.wave_time, "time at which the waves are shown [s]");
     c.add_option("--wave-loop", w.wave_loop,
                  text("they repeat themselves after this [s]; default ", usual.loop_s));
@@ -240,17 +245,27 @@ void apply_settings_file(CLI::App& c, const ViewWords& w) {
     }
 }
 
+double convergence_deg(const scene::Scene& scene) {
+    const ScenePoint p = geo::to_scene(scene.frame, scene.lakes.front().position);
+    return convergence_at(scene, p.x_m, p.y_m);
+}
+
 waves::Settings make_waves(const ViewWords& w, const scene::Scene& scene) {
     waves::Settings s = scene.waves;
     if (w.waves)
         s.model = waves::model_from_name(*w.waves);
-    else if (w.wind && s.model == waves::Model::calm)
+    else if ((w.wind || w.wind_rose) && s.model == waves::Model::calm)
         s.model = waves::Model::jonswap;
-    s.wind_m_per_s = w.wind.value_or(s.wind_m_per_s);
-    if (w.wind_from) {
-        const ScenePoint p = geo::to_scene(scene.frame, scene.lakes.front().position);
-        s.wind_from_deg = *w.wind_from - convergence_at(scene, p.x_m, p.y_m);
+    if (w.wind_rose) {
+        if (w.wind || w.wind_from)
+            throw Error("--wind-rose excludes --wind and --wind-from");
+        const std::vector<waves::WindSector> rose = waves::read_wind_rose(*w.wind_rose);
+        s.wind_m_per_s = waves::prevailing(rose).speed_m_per_s;
+        s.wind_from_deg = waves::prevailing(rose).from_deg - convergence_deg(scene);
     }
+    s.wind_m_per_s = w.wind.value_or(s.wind_m_per_s);
+    if (w.wind_from)
+        s.wind_from_deg = *w.wind_from - convergence_deg(scene);
     s.time_s = w.wave_time.value_or(s.time_s);
     s.loop_s = w.wave_loop.value_or(s.loop_s);
     s.choppiness = w.choppiness.value_or(s.choppiness);

@@ -188,6 +188,57 @@ void read_heights(const Field& f, const Field& grid, GridSize size, Heightfield&
     out.scale_m = f["scale_m"].number(1e-9, 1e4);
 }
 
+json wave_settings_json(const waves::Settings& s) {
+    json out = {{"model", waves::name_of(s.model)},
+                {"wind_m_per_s", s.wind_m_per_s},
+                {"wind_from_deg", s.wind_from_deg},
+                {"time_s", s.time_s},
+                {"loop_s", s.loop_s},
+                {"choppiness", s.choppiness},
+                {"cascades", s.cascades},
+                {"texels", s.texels},
+                {"seed", s.seed},
+                {"spreading", s.spreading},
+                {"fetch_m", or_null(s.fetch_m)},
+                {"depth_m", or_null(s.depth_m)},
+                {"shortest_m", or_null(s.shortest_m)},
+                {"patch_m", or_null(s.patch_m)}};
+    json list = json::array();
+    for (const waves::PlaneWave& w : s.list)
+        list.push_back({{"amplitude_m", w.amplitude_m},
+                        {"length_m", w.length_m},
+                        {"towards_deg", w.towards_deg},
+                        {"phase_rad", w.phase_rad}});
+    out["list"] = list;
+    return out;
+}
+
+waves::Settings read_waves(const Field& f) {
+    waves::Settings s;
+    s.model = waves::model_from_name(f["model"].string());
+    s.wind_m_per_s = f["wind_m_per_s"].number(0, 100);
+    s.wind_from_deg = f["wind_from_deg"].number(-1e4, 1e4);
+    s.time_s = f["time_s"].number(-1e10, 1e10);
+    s.loop_s = f["loop_s"].number(0.01, 1e5);
+    s.choppiness = f["choppiness"].number(0, 2);
+    s.cascades = f["cascades"].integer(1, 4);
+    s.texels = f["texels"].integer(128, 2048);
+    s.seed = std::uint32_t(f["seed"].number(0, 4294967295.0));
+    s.spreading = f["spreading"].number(0, 20);
+    s.fetch_m = f["fetch_m"].number_or_null(1, 1e6);
+    s.depth_m = f["depth_m"].number_or_null(0, 1e4);
+    s.shortest_m = f["shortest_m"].number_or_null(0.017, 1e3);
+    s.patch_m = f["patch_m"].number_or_null(0.5, 1e5);
+    const Field list = f["list"];
+    for (std::size_t i = 0, n = list.array_size(0, 64); i < n; ++i) {
+        const Field w = list.at(i);
+        s.list.push_back({w["amplitude_m"].number(0, 50), w["length_m"].number(0.002, 1e4),
+                          w["towards_deg"].number(-1e4, 1e4), w["phase_rad"].number(-1e6, 1e6)});
+    }
+    s.validate();
+    return s;
+}
+
 ImportReport read_report(const Field& f) {
     ImportReport r;
     r.command = f["command"].string();
@@ -296,6 +347,55 @@ std::string stages_json(const LakeRecord& lake, const std::optional<LakeSpill>& 
     return out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
+std::string waves_json(const WavesReport& r) {
+    const auto numbers = [](const waves::SeaReport& s) {
+        return json{{"fetch_m", s.fetch_m},
+                    {"depth_m", s.depth_m},
+                    {"significant_height_m", s.significant_height_m},
+                    {"peak_period_s", s.peak_period_s},
+                    {"peak_length_m", s.peak_length_m},
+                    {"mean_square_slope", s.mean_square_slope}};
+    };
+    json out = {{"model", r.sea.model},
+                {"wind_m_per_s", r.sea.wind_m_per_s},
+                {"wind_from_deg", r.sea.wind_from_deg}};
+    json drawn = numbers(r.sea);
+    drawn["drawn_slope"] = r.sea.drawn_slope;
+    drawn["longest_m"] = r.sea.longest_m;
+    drawn["shortest_m"] = r.sea.shortest_m;
+    drawn["choppiness"] = r.sea.choppiness;
+    drawn["notes"] = r.sea.notes;
+    drawn["texels"] = r.texels;
+    json cascades = json::array(), lakes = json::array(), fetches = json::array(),
+         rose = json::array();
+    for (const auto& c : r.cascades)
+        cascades.push_back({{"patch_m", c.patch_m},
+                            {"shortest_m", c.shortest_m},
+                            {"longest_m", c.longest_m},
+                            {"significant_height_m", c.significant_height_m},
+                            {"mean_square_slope", c.mean_square_slope},
+                            {"choppiness", c.choppiness}});
+    drawn["cascades"] = cascades;
+    out["drawn"] = drawn;
+    for (const LakeWaves& lake : r.lakes) {
+        json one = {{"id", lake.id}, {"name", lake.name}};
+        one.update(numbers(lake.report));
+        lakes.push_back(one);
+    }
+    out["lakes"] = lakes;
+    for (const FetchRow& row : r.fetches)
+        fetches.push_back({{"wind_from_deg", row.from_deg}, {"fetch_m", row.fetch_m}});
+    out["fetches"] = fetches;
+    for (const auto& row : r.rose)
+        rose.push_back({{"wind_from_deg", row.from_deg},
+                        {"wind_m_per_s", row.speed_m_per_s},
+                        {"share", row.share},
+                        {"significant_height_m", row.significant_height_m},
+                        {"peak_period_s", row.peak_period_s}});
+    out["wind_rose"] = rose;
+    return out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
 std::string to_json(const scene::Scene& scene, const FileNames& files) {
     const geo::Frame& f = scene.frame;
     json frame = {{"semi_major_m", f.semi_major_m},
@@ -346,6 +446,7 @@ std::string to_json(const scene::Scene& scene, const FileNames& files) {
           {"absorption_per_m", vector_of(scene.optics.absorption_per_m)},
           {"backscattering_per_m", vector_of(scene.optics.backscattering_per_m)},
           {"index", scene.optics.index}}},
+        {"waves", wave_settings_json(scene.waves)},
         {"look",
          {{"tree_line_m", scene.look.tree_line_m}, {"snow_line_m", scene.look.snow_line_m}}},
         {"cameras", cameras}};
@@ -399,6 +500,8 @@ scene::Scene from_json(const std::string& source, FileNames& files) {
     scene.optics.absorption_per_m = optics["absorption_per_m"].vector(0, 100);
     scene.optics.backscattering_per_m = optics["backscattering_per_m"].vector(0, 100);
     scene.optics.index = optics["index"].number(1, 3);
+    if (root.has("waves")) // folders of an earlier tarn are calm
+        scene.waves = read_waves(root["waves"]);
     scene.look.tree_line_m = root["look"]["tree_line_m"].number(-1e5, 1e5);
     scene.look.snow_line_m = root["look"]["snow_line_m"].number(-1e5, 1e5);
     const Field cameras = root["cameras"];

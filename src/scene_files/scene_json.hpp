@@ -1,6 +1,7 @@
 #pragma once
 /// @file scene_json.hpp  scene.json <-> Scene, without the rasters. Schema: docs/scene-folder.md.
 #include "scene/scene.hpp"
+#include "waves/sea.hpp"
 
 #include <string>
 
@@ -34,6 +35,33 @@ struct StageRow {
 /// What `tarn stats --json` prints: "lake", "spill", "stages".
 std::string stages_json(const LakeRecord& lake, const std::optional<LakeSpill>& spill,
                         const std::vector<StageRow>& rows);
+
+struct FetchRow {
+    double from_deg = 0.0, fetch_m = 0.0;
+};
+
+struct LakeWaves {
+    int id = 0;
+    std::string name;
+    waves::SeaReport report;
+};
+
+/// What `tarn waves` finds.
+struct WavesReport {
+    struct CascadeRow {
+        double patch_m, shortest_m, longest_m, significant_height_m, mean_square_slope, choppiness;
+    };
+    struct RoseRow {
+        double from_deg, speed_m_per_s, share, significant_height_m, peak_period_s;
+    };
+    waves::SeaReport sea; ///< what is drawn
+    int texels = 0;       ///< a side of each patch
+    std::vector<CascadeRow> cascades;
+    std::vector<LakeWaves> lakes;
+    std::vector<FetchRow> fetches; ///< of the first lake
+    std::vector<RoseRow> rose;     ///< of the first lake, where a wind rose was given
+};
+std::string waves_json(const WavesReport& report);
 
 /// Fills everything but the codes of `ground`, `water` and `ortho` (whose sizes are set).
 /// @throws tarn::Error  naming the field: missing, of the wrong type, out of range, unknown
