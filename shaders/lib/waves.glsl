@@ -43,14 +43,14 @@ float wave_height(sampler2DArray heights, sampler2D table, WaveBlock waves, vec2
 //               that of the bed times the height over the depth, is left out.
 //
 //   taken  covariance xx, xy, yy of the slopes that the filter took away
-vec2 wave_slopes(sampler2DArray heights, sampler2D table, WaveBlock waves, vec2 at_m, float footprint_m, vec4 amplitude,
+vec2 wave_slopes(sampler2DArray slopes, sampler2D table, WaveBlock waves, vec2 at_m, float footprint_m, vec4 amplitude,
                  out vec3 taken) {
     vec2 sum = vec2(0.0);
     taken = waves.rough.xyz * amplitude[max(TARN_CASCADES - 1, 0)] * amplitude[max(TARN_CASCADES - 1, 0)];
     for (int j = 0; j < TARN_CASCADES; ++j) {
         vec2 place = waves.patches[j].xy + at_m / waves.patches[j].z;
         float level = wave_level(waves, j, footprint_m), column = min(level, float(TARN_WAVE_LEVELS - 1));
-        sum += amplitude[j] * textureLod(heights, vec3(place, float(j)), level).yz;
+        sum += amplitude[j] * textureLod(slopes, vec3(place, float(j)), level).xy;
         ivec2 low = ivec2(int(column), j);
         vec3 lost = mix(texelFetch(table, low, 0).xyz,
                         texelFetch(table, ivec2(min(low.x + 1, TARN_WAVE_LEVELS - 1), j), 0).xyz, fract(column));
@@ -63,6 +63,28 @@ vec2 wave_slopes(sampler2DArray heights, sampler2D table, WaveBlock waves, vec2 
         taken += 0.5 * a * a * (1.0 - share * share) * vec3(sine.x * sine.x, sine.x * sine.y, sine.y * sine.y);
     }
     return sum;
+}
+
+// The water's surface where a ray met it.
+struct WaveSurface {
+    vec2 mean, lot;   // slopes: filtered, and one drawn from those inside the pixel
+    float level;      // of the lake [m]
+    vec3 taken;       // covariance of the slopes inside the pixel
+};
+
+// pack_surface — slopes to a two-thousandth of theirs, standard deviations to a thousandth, up to 1.
+uvec4 pack_surface(WaveSurface s) {
+    vec2 deviation = sqrt(max(s.taken.xz, vec2(1e-12)));
+    float correlation = clamp(s.taken.y / (deviation.x * deviation.y), -1.0, 1.0);
+    uvec3 parts = uvec3(round(vec3(min(deviation, 1.0) * 2047.0, (0.5 + 0.5 * correlation) * 1023.0)));
+    return uvec4(packHalf2x16(s.mean), packHalf2x16(s.lot), floatBitsToUint(s.level), parts.x | parts.y << 11 | parts.z << 22);
+}
+
+WaveSurface unpack_surface(uvec4 p) {
+    vec2 deviation = vec2(p.w & 2047u, p.w >> 11 & 2047u) / 2047.0;
+    float correlation = float(p.w >> 22) * (2.0 / 1023.0) - 1.0;
+    return WaveSurface(unpackHalf2x16(p.x), unpackHalf2x16(p.y), uintBitsToFloat(p.z),
+                       vec3(deviation.x * deviation.x, correlation * deviation.x * deviation.y, deviation.y * deviation.y));
 }
 
 // normal_of_slope — unit, scene axes.

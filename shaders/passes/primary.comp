@@ -24,7 +24,8 @@ layout(binding = TARN_TEXTURE_WAVES) uniform sampler2DArray wave_heights;
 layout(binding = TARN_TEXTURE_AMPLITUDE) uniform sampler2D amplitudes;
 layout(binding = TARN_TEXTURE_WAVE_TABLE) uniform sampler2D wave_table;
 layout(binding = TARN_TEXTURE_WAVE_LIMITS) uniform usampler2D wave_limits;
-layout(binding = TARN_IMAGE_SURFACE, rgba32f) uniform writeonly image2D surfaces;
+layout(binding = TARN_TEXTURE_SLOPES) uniform sampler2DArray wave_slope_layers;
+layout(binding = TARN_IMAGE_SURFACE, rgba32ui) uniform writeonly uimage2D surfaces;
 #endif
 layout(binding = TARN_IMAGE_DISTANCE, r32f) uniform writeonly image2D distance_image;
 
@@ -90,8 +91,9 @@ float store_surface(ivec2 pixel, Part part, Hit hit) {
     vec4 amplitude = wave_fade(waves, level - bilinear(ground, hit.inside)) * wave_amplitude(amplitudes, waves, at);
     float footprint = wave_footprint(view.camera.w, hit.t, part.direction.z);
     vec3 taken;
-    vec2 slope = wave_slopes(wave_heights, wave_table, waves, at, footprint, amplitude, taken);
-    imageStore(surfaces, pixel - view.tile.xy, vec4(slope_lot(slope, taken, even_numbers(pixel)), level, 0.0));
+    vec2 slope = wave_slopes(wave_slope_layers, wave_table, waves, at, footprint, amplitude, taken);
+    vec2 lot = slope_lot(slope, taken, even_numbers(pixel));
+    imageStore(surfaces, pixel - view.tile.xy, pack_surface(WaveSurface(slope, lot, level, taken)));
     return level;
 }
 

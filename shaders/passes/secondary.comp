@@ -10,8 +10,8 @@ layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
 layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
 #ifdef TARN_WAVES
-#include "shared/wave_block.h"
-layout(binding = TARN_IMAGE_SURFACE, rgba32f) uniform readonly image2D surfaces;
+#include "lib/waves.glsl"
+layout(binding = TARN_IMAGE_SURFACE, rgba32ui) uniform readonly uimage2D surfaces;
 #endif
 layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform readonly uimage2D first_hits;
 layout(binding = TARN_IMAGE_HITS + 1, rgba32ui) uniform writeonly uimage2D mirrored_hits;
@@ -27,8 +27,8 @@ void main() {
     int number = 1 + int(gl_GlobalInvocationID.z);
     Part first = camera_part(view, local + view.tile.xy);
 #ifdef TARN_WAVES
-    vec4 met = imageLoad(surfaces, local);
-    Surface surface = Surface(met.xy, met.z);
+    WaveSurface met = unpack_surface(imageLoad(surfaces, local));
+    Surface surface = Surface(met.lot, met.level);
 #else
     Surface surface = calm_surface(first, first_end);
 #endif

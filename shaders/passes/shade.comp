@@ -19,11 +19,7 @@ layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform readonly uimage2D hits[3];
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
 #ifdef TARN_WAVES
 #include "lib/waves.glsl"
-layout(binding = TARN_BLOCK_WAVES, std140) uniform Waves { WaveBlock waves; };
-layout(binding = TARN_TEXTURE_WAVES) uniform sampler2DArray wave_heights;
-layout(binding = TARN_TEXTURE_AMPLITUDE) uniform sampler2D amplitudes;
-layout(binding = TARN_TEXTURE_WAVE_TABLE) uniform sampler2D wave_table;
-layout(binding = TARN_IMAGE_SURFACE, rgba32f) uniform readonly image2D surfaces;
+layout(binding = TARN_IMAGE_SURFACE, rgba32ui) uniform readonly uimage2D surfaces;
 #endif
 
 const float inverse_pi = 0.318309886184;
@@ -126,20 +122,13 @@ struct Glitter {
     float lot;     // weight of the one slope that rays were sent by
 };
 
-Glitter glitter_of(Part first, End end, Surface surface) {
-    vec2 at = (vec2(end.cell) + end.inside - view.base.xy) * view.grid.z;
-    at.y = -at.y;
-    vec4 ground = textureGather(heights, (vec2(end.cell) + 1.0) * view.inverse_size.xy, 0) * view.heights.y;
-    vec4 amplitude = wave_fade(waves, surface.level - bilinear(ground, end.inside)) * wave_amplitude(amplitudes, waves, at);
-    float footprint = view.camera.w * end.t * inversesqrt(max(abs(first.direction.z), 0.02)); // meet_waves.glsl
-    vec3 taken;
-    vec2 mean = wave_slopes(wave_heights, wave_table, waves, at, footprint, amplitude, taken);
+Glitter glitter_of(Part first, End end, WaveSurface surface) {
     vec3 to_viewer = -first.direction;
     bool schlick = on(TARN_FLAG_SCHLICK);
     float eta = 1.0 / view.attenuation.w, seen = 0.0;
     Glitter g = Glitter(vec3(0.0), 0.0, vec3(0.0), 0.0);
     for (int i = 0; i < 9; ++i) {
-        SlopePoint point = slope_point(mean, taken, i);
+        SlopePoint point = slope_point(surface.mean, surface.taken, i);
         float size = facing(to_viewer, point.slope), weight = point.chance * size;
         vec3 normal = normal_of_slope(point.slope);
         float cosine = clamp(dot(to_viewer, normal), 0.0, 1.0);
@@ -153,14 +142,14 @@ Glitter glitter_of(Part first, End end, Surface surface) {
     float least = max(seen, 1e-4);
     g.mirror = seen > 0.0 ? g.mirror / least : 1.0;
     g.sky /= least;
-    g.lot = facing(to_viewer, surface.slope) / least;
+    g.lot = facing(to_viewer, surface.lot) / least;
     if (on(TARN_FLAG_SUN_DISC) && (end.flags & end_lit) != 0u) {
         // Cox & Munk 1954: the share of facets that throw the sun into the eye. The sun's own width, seen in a
         // mirror, is half of it in slope.
         vec3 halfway = normalize(to_viewer + view.sun.xyz);
         vec2 needed = -halfway.xy / halfway.z;
         float width = 0.0625 * view.sun.w * view.sun.w;
-        float chance = slope_density(needed - mean, taken + vec3(width, 0.0, width));
+        float chance = slope_density(needed - surface.mean, surface.taken + vec3(width, 0.0, width));
         float cosine = clamp(dot(to_viewer, halfway), 0.0, 1.0);
         float mirror = schlick ? fresnel_schlick(cosine, eta) : fresnel_dielectric(cosine, eta);
         float up2 = halfway.z * halfway.z;
@@ -183,11 +172,11 @@ void main() {
         radiance += remaining * texelFetch(overlay, pixel, 0).rgb;
     if ((first_end.flags & end_surface) != 0u) {
 #ifdef TARN_WAVES
-        vec4 met = imageLoad(surfaces, local);
-        Surface surface = Surface(met.xy, met.z);
+        WaveSurface met = unpack_surface(imageLoad(surfaces, local));
+        Surface surface = Surface(met.lot, met.level);
         Glitter glitter;
         if (!first.in_water)
-            glitter = glitter_of(first, first_end, surface);
+            glitter = glitter_of(first, first_end, met);
 #else
         Surface surface = calm_surface(first, first_end);
 #endif

@@ -14,8 +14,8 @@ layout(binding = TARN_TEXTURE_BOUNDS) uniform sampler2D bounds;
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
 layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform uimage2D hits[3];
 #ifdef TARN_WAVES
-#include "shared/wave_block.h"
-layout(binding = TARN_IMAGE_SURFACE, rgba32f) uniform readonly image2D surfaces;
+#include "lib/waves.glsl"
+layout(binding = TARN_IMAGE_SURFACE, rgba32ui) uniform readonly uimage2D surfaces;
 #endif
 
 void main() {
@@ -30,8 +30,8 @@ void main() {
         if ((first_end.flags & end_surface) == 0u)
             return;
 #ifdef TARN_WAVES
-        vec4 met = imageLoad(surfaces, local);
-        Surface surface = Surface(met.xy, met.z);
+        WaveSurface met = unpack_surface(imageLoad(surfaces, local));
+        Surface surface = Surface(met.lot, met.level);
 #else
         Surface surface = calm_surface(part, first_end);
 #endif

@@ -15,10 +15,14 @@
 #endif
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(binding = TARN_BUFFER_WAVE_FIELDS, std430) readonly buffer Fields { vec2 fields[]; };
-layout(binding = TARN_IMAGE_WAVE_LEVELS, rgba32f) uniform writeonly image2DArray surface;
+layout(binding = TARN_IMAGE_WAVE_HEIGHTS, r32f) uniform writeonly image2DArray heights;
+layout(binding = TARN_IMAGE_WAVE_SLOPES, rg16f) uniform writeonly image2DArray slopes;
+layout(binding = TARN_IMAGE_WAVE_LIMITS, r32ui) uniform uimage2D limits;
 layout(location = 0) uniform vec4 choppiness;
 layout(location = 1) uniform vec4 bound;  // on |height| [m]
 layout(location = 2) uniform vec4 per_m;  // texels a metre
+
+shared uint folded;
 
 uint place(uint cascade, uint field, ivec2 at) {
     const int n = TARN_FFT_N;
@@ -70,5 +74,13 @@ void main() {
     slope = fields[place(cascade, 1u, texel)];
 #endif
     height = clamp(height, -bound[cascade], bound[cascade]);
-    imageStore(surface, ivec3(texel, int(cascade)), vec4(height, slope, least));
+    imageStore(heights, ivec3(texel, int(cascade)), vec4(height));
+    imageStore(slopes, ivec3(texel, int(cascade)), vec4(slope, 0.0, 0.0));
+    if (gl_LocalInvocationIndex == 0u)
+        folded = 0u;
+    barrier();
+    atomicMax(folded, floatBitsToUint(max(1.0 - least, 0.0)));
+    barrier();
+    if (gl_LocalInvocationIndex == 0u)
+        imageAtomicMax(limits, ivec2(TARN_WAVE_LEVELS + 1, int(cascade)), folded);
 }

@@ -14,15 +14,18 @@ using vec4 = glm::vec4;
 #define TARN_BUFFER_WAVE_TURNS 4    // uint: omega in turns a loop
 #define TARN_BUFFER_WAVE_FIELDS 5   // vec2: transforms, [cascade][field][row][column]
 #define TARN_BUFFER_TWIDDLES 6      // vec2: exp(2 pi i n / N)
-#define TARN_TEXTURE_WAVES 6        // RGBA32F array: height [m], slopes, least eigenvalue; a layer a cascade
+#define TARN_TEXTURE_WAVES 6        // R32F array: height [m]; a layer a cascade
+#define TARN_TEXTURE_SLOPES 10      // RG16F array: rise per metre east and north
 #define TARN_TEXTURE_AMPLITUDE 7    // RGBA8: share of each cascade's height at a place
 #define TARN_TEXTURE_WAVE_TABLE 8   // RGBA32F: rows 0-3 covariance taken away by filter 2^column texels;
                                     // row 4 the sines: k, amplitude, phase near the base
 #define TARN_TEXTURE_WAVE_LIMITS 9  // R32UI, floats' bits: greatest |height| by level (column) and cascade (row);
-                                    // the last column: steepest slope between texels
-#define TARN_IMAGE_SURFACE 7        // rgba32f: slopes of the surface met, its mean level [m], -
-#define TARN_IMAGE_WAVE_LEVELS 0    // 0-3: rgba32f arrays, levels being written
-#define TARN_IMAGE_WAVE_LIMITS 4    // r32ui
+                                    // then the steepest slope between texels, and one minus the least
+                                    // eigenvalue of the displacement's Jacobian
+#define TARN_IMAGE_SURFACE 7        // rgba32ui: the surface met, packed (lib/waves.glsl)
+#define TARN_IMAGE_WAVE_HEIGHTS 0   // 0-2: r32f arrays, levels being written
+#define TARN_IMAGE_WAVE_SLOPES 3    // 3-5: rg16f arrays
+#define TARN_IMAGE_WAVE_LIMITS 6    // r32ui
 
 #define TARN_WAVE_LEVELS 12         // columns of the table and the limits, less the slope's
 

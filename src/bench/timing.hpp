@@ -1,6 +1,8 @@
 #pragma once
 /// @file timing.hpp  How long the GPU takes for something.
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace tarn::bench {
 
@@ -15,5 +17,16 @@ struct Times {
 /// @param work  issues GL commands; the context must be current
 /// @param runs  at least 1
 Times time_on_gpu(const std::function<void()>& work, int runs);
+
+/// Median time of each part of a piece of work.
+struct PartTime {
+    std::string name;
+    double median_ms = 0;
+};
+
+/// @param work  issues GL commands and calls what it is given before each of its parts by its name,
+///              and with "end" after the last
+std::vector<PartTime>
+time_parts(const std::function<void(const std::function<void(const char*)>&)>& work, int runs);
 
 } // namespace tarn::bench

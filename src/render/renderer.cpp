@@ -280,12 +280,8 @@ void Renderer::prepare(const scene::View& view) {
             hits = gpu::Texture2D(GL_RGBA32UI, settings.width_px, tile_rows, 1,
                                   gpu::Filter::nearest, "hits");
     if (wavy() && (surfaces_.width_px() != settings.width_px || surfaces_.height_px() != tile_rows))
-        surfaces_ = gpu::Texture2D(GL_RGBA32F, settings.width_px, tile_rows, 1,
+        surfaces_ = gpu::Texture2D(GL_RGBA32UI, settings.width_px, tile_rows, 1,
                                    gpu::Filter::nearest, "surfaces");
-    if (wavy())
-        surfaces_.bind_image(TARN_IMAGE_SURFACE, GL_READ_WRITE);
-    for (GLuint k = 0; k < 3; ++k)
-        hits_[k].bind_image(TARN_IMAGE_HITS + k, GL_READ_WRITE);
     const bool from_above = (flags & TARN_FLAG_UNDER_WATER) == 0;
     use_walk(settings.walk, settings.walk_setting);
     if (settings.shadows || settings.reflection || settings.refraction)
@@ -294,12 +290,32 @@ void Renderer::prepare(const scene::View& view) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_LAKES, lakes_.id());
     sky_.bind(TARN_TEXTURE_SKY);
     ortho_.bind(TARN_TEXTURE_ORTHO);
-    radiance_.bind_image(TARN_IMAGE_RADIANCE, GL_READ_WRITE);
-    distance_.bind_image(TARN_IMAGE_DISTANCE, GL_WRITE_ONLY);
     beams_.bind(TARN_TEXTURE_BEAMS);
-    beams_.bind_image(TARN_IMAGE_BEAMS, GL_WRITE_ONLY);
+    bind_images();
     set_sample(0, 1);
     gpu::check_gl("preparing the picture");
+}
+
+// Passes that make waves or bounds use the same few image units.
+void Renderer::bind_images() {
+    radiance_.bind_image(TARN_IMAGE_RADIANCE, GL_READ_WRITE);
+    distance_.bind_image(TARN_IMAGE_DISTANCE, GL_WRITE_ONLY);
+    beams_.bind_image(TARN_IMAGE_BEAMS, GL_WRITE_ONLY);
+    for (GLuint k = 0; k < 3; ++k)
+        hits_[k].bind_image(TARN_IMAGE_HITS + k, GL_READ_WRITE);
+    if (wavy())
+        surfaces_.bind_image(TARN_IMAGE_SURFACE, GL_READ_WRITE);
+}
+
+void Renderer::move_waves(double time_s) {
+    if (!wavy())
+        return;
+    if (on_pass)
+        on_pass("waves");
+    waves_->move_to(time_s);
+    const Heightfield& ground = scene_.ground;
+    waves_->bind({ground.x_m(double(block_.base.x)), ground.y_m(double(block_.base.y))}, lift_m_);
+    bind_images();
 }
 
 void Renderer::set_sample(int sample, int samples) {
@@ -317,22 +333,31 @@ void Renderer::draw_tile() {
     const WalkPasses& calm = passes_.at(walk_);
     const WavyPasses* wavy_ones = wavy() ? &wavy_passes() : nullptr;
     bind_walk((block_.counts.z & TARN_FLAG_UNDER_WATER) == 0); // only from above is water met
+    const auto begins = [&](const char* name) {
+        if (on_pass)
+            on_pass(name);
+    };
+    begins("primary");
     (wavy_ones ? wavy_ones->primary : calm.primary).use();
     glDispatchCompute(across, down, 1);
     glMemoryBarrier(images);
     bind_walk(false);
     if (split) {
+        begins("secondary");
         (wavy_ones ? wavy_ones->secondary : calm.secondary).use();
         glDispatchCompute(across, down, 2);
         glMemoryBarrier(images);
     }
     if ((block_.counts.z & TARN_FLAG_SHADOWS) != 0 && block_.sun.z > 0.0f) {
+        begins("shadow");
         (wavy_ones ? wavy_ones->shadow : calm.shadow).use();
         glDispatchCompute(across, down, split ? 3 : 1);
         glMemoryBarrier(images);
     }
+    begins("shade");
     (wavy_ones ? wavy_ones->shade : shade_).use();
     glDispatchCompute(across, down, 1);
+    begins("end");
 }
 
 void Renderer::find_beams() {
@@ -392,6 +417,8 @@ void Renderer::draw_once() {
     const int width = int(block_.counts.x), height = int(block_.counts.y),
               rows = hits_[0].height_px();
     view_buffer_.write(&block_, sizeof block_);
+    if (on_pass)
+        on_pass("beams");
     if (block_.offset.z == 0.0f) { // beams hold whole pixels: the first sample's serve all
         bind_walk((block_.counts.z & TARN_FLAG_UNDER_WATER) == 0);
         find_beams();

@@ -51,6 +51,10 @@ public:
     /// Uploads camera, light and settings, and makes the target images.
     void prepare(const scene::View& view);
 
+    /// Shows the sea of the last prepare() at another time: all that an animation with a still
+    /// camera needs between two pictures. Costs nothing where it is calm.
+    void move_waves(double time_s);
+
     /// Distance to what each pixel's ray meets first, > 0 ground, < 0 water, 0 nothing, left on the
     /// GPU. Call prepare() first.
     void find_first_hits();
@@ -67,6 +71,10 @@ public:
     /// The sea of the last prepare(), where it was not calm.
     const WaveField* waves() const { return wavy() ? &*waves_ : nullptr; }
     WaveField* waves() { return wavy() ? &*waves_ : nullptr; }
+
+    /// Called before each pass with its name, and with "end" after the last: for timing. May be
+    /// empty.
+    std::function<void(const char*)> on_pass;
 
     /// Memory of the heights and of all bounds made so far.
     std::size_t field_bytes() const { return heights_bytes_ + bounds_.bytes(); }
@@ -90,6 +98,7 @@ private:
     void use_walk(scene::Walk walk, double setting);
     std::string walk_file() const;
     void prepare_waves(const scene::View& view);
+    void bind_images();
     void lift_water(double lift_m);
     bool wavy() const { return waves_ && !waves_->sea().still(); }
     const WavyPasses& wavy_passes();

@@ -3,6 +3,7 @@
 #include "core/text.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace tarn::render {
@@ -70,10 +71,11 @@ void WaveField::set(waves::Sea sea) {
     if (sea_.still())
         return;
     bytes_ = 0;
-    limits_ = gpu::Texture2D(GL_R32UI, TARN_WAVE_LEVELS + 1, waves::most_cascades, 1,
+    limits_ = gpu::Texture2D(GL_R32UI, TARN_WAVE_LEVELS + 2, waves::most_cascades, 1,
                              gpu::Filter::nearest, "wave limits");
     if (sea_.cascades.empty()) {
-        heights_ = gpu::TextureLayers(GL_RGBA32F, 1, 1, "no waves");
+        heights_ = gpu::TextureLayers(GL_R32F, 1, 1, "no waves");
+        slopes_ = gpu::TextureLayers(GL_RG16F, 1, 1, "no waves");
     } else {
         build_passes();
         const int n = sea_.cascades.front().texels, count = int(sea_.cascades.size());
@@ -82,7 +84,8 @@ void WaveField::set(waves::Sea sea) {
         turns_ = gpu::Buffer(texels * std::size_t(count) * sizeof(std::uint32_t), nullptr);
         fields_ =
             gpu::Buffer(texels * std::size_t(count * passes_.fields) * sizeof(glm::vec2), nullptr);
-        heights_ = gpu::TextureLayers(GL_RGBA32F, n, count, "waves");
+        heights_ = gpu::TextureLayers(GL_R32F, n, count, "waves");
+        slopes_ = gpu::TextureLayers(GL_RG16F, n, count, "slopes of waves");
         for (int j = 0; j < count; ++j) {
             waves::Cascade& c = sea_.cascades[std::size_t(j)];
             glNamedBufferSubData(h0_.id(), GLintptr(texels * std::size_t(j) * sizeof(glm::vec4)),
@@ -91,7 +94,7 @@ void WaveField::set(waves::Sea sea) {
                                  GLintptr(texels * std::size_t(j) * sizeof(std::uint32_t)),
                                  GLsizeiptr(texels * sizeof(std::uint32_t)), c.turns.data());
         }
-        bytes_ = texels * std::size_t(count) * (20 + std::size_t(passes_.fields) * 8 + 16 * 4 / 3);
+        bytes_ = texels * std::size_t(count) * (20 + std::size_t(passes_.fields) * 8 + 8 * 4 / 3);
     }
     const GridSize map = sea_.amplitude.size;
     amplitude_ =
@@ -135,20 +138,24 @@ void WaveField::move_to(double time_s) {
                 per_cascade(sea_.cascades, [](const waves::Cascade& c) { return c.choppiness; }));
     set_uniform(1, per_cascade(sea_.cascades, [](const waves::Cascade& c) { return c.bound_m; }));
     set_uniform(2, per_m);
-    heights_.bind_image(TARN_IMAGE_WAVE_LEVELS, GL_WRITE_ONLY, 0);
-    glDispatchCompute(groups(n, 16), groups(n, 8), GLuint(count));
     const GLuint zero = 0;
     glClearTexImage(limits_.id(), 0, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
+    heights_.bind_image(TARN_IMAGE_WAVE_HEIGHTS, GL_WRITE_ONLY, 0);
+    slopes_.bind_image(TARN_IMAGE_WAVE_SLOPES, GL_WRITE_ONLY, 0);
+    limits_.bind_image(TARN_IMAGE_WAVE_LIMITS, GL_READ_WRITE);
+    glDispatchCompute(groups(n, 16), groups(n, 8), GLuint(count));
     passes_.levels.use();
     heights_.bind(TARN_TEXTURE_WAVES);
-    limits_.bind_image(TARN_IMAGE_WAVE_LIMITS, GL_READ_WRITE);
+    slopes_.bind(TARN_TEXTURE_SLOPES);
     set_uniform(2, per_m);
-    for (int source = 0; source + 1 < heights_.levels(); source += 4) {
+    for (int source = 0; source + 1 < heights_.levels(); source += 3) {
         glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-        const int made = std::min(4, heights_.levels() - 1 - source);
-        for (int k = 0; k < 4; ++k)
-            heights_.bind_image(GLuint(TARN_IMAGE_WAVE_LEVELS + k), GL_WRITE_ONLY,
-                                source + 1 + std::min(k, made - 1));
+        const int made = std::min(3, heights_.levels() - 1 - source);
+        for (int k = 0; k < 3; ++k) {
+            const int level = source + 1 + std::min(k, made - 1);
+            heights_.bind_image(GLuint(TARN_IMAGE_WAVE_HEIGHTS + k), GL_WRITE_ONLY, level);
+            slopes_.bind_image(GLuint(TARN_IMAGE_WAVE_SLOPES + k), GL_WRITE_ONLY, level);
+        }
         glUniform1i(0, source);
         glUniform1i(1, made);
         const GLuint across = groups(std::max(n >> source, 1), 16);
@@ -190,6 +197,7 @@ void WaveField::bind(glm::dvec2 base, double lift_m) {
     block_.write(&block, sizeof block);
     glBindBufferBase(GL_UNIFORM_BUFFER, TARN_BLOCK_WAVES, block_.id());
     heights_.bind(TARN_TEXTURE_WAVES);
+    slopes_.bind(TARN_TEXTURE_SLOPES);
     amplitude_.bind(TARN_TEXTURE_AMPLITUDE);
     table_.bind(TARN_TEXTURE_WAVE_TABLE);
     limits_.bind(TARN_TEXTURE_WAVE_LIMITS);
@@ -232,14 +240,26 @@ double WaveField::height_at(glm::dvec2 place, double depth_m) const {
     return fade * sum;
 }
 
-std::vector<glm::vec4> WaveField::read(int cascade) const {
+std::vector<glm::vec3> WaveField::read(int cascade) const {
     const std::size_t texels = std::size_t(heights_.side_px()) * std::size_t(heights_.side_px());
-    std::vector<glm::vec4> all(texels * std::size_t(heights_.layers()));
+    const std::size_t all = texels * std::size_t(heights_.layers());
+    std::vector<float> heights(all), slopes(2 * all);
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-    heights_.download(0, GL_RGBA, GL_FLOAT, all.data(), all.size() * sizeof all[0]);
+    heights_.download(0, GL_RED, GL_FLOAT, heights.data(), heights.size() * sizeof heights[0]);
+    slopes_.download(0, GL_RG, GL_FLOAT, slopes.data(), slopes.size() * sizeof slopes[0]);
     gpu::check_gl("reading the waves");
-    const auto first = all.begin() + std::ptrdiff_t(texels * std::size_t(cascade));
-    return {first, first + std::ptrdiff_t(texels)};
+    std::vector<glm::vec3> out;
+    for (std::size_t i = texels * std::size_t(cascade); i < texels * std::size_t(cascade + 1); ++i)
+        out.emplace_back(heights[i], slopes[2 * i], slopes[2 * i + 1]);
+    return out;
+}
+
+double WaveField::least_eigenvalue(int cascade) const {
+    std::uint32_t bits[waves::most_cascades * (TARN_WAVE_LEVELS + 2)];
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    limits_.download(GL_RED_INTEGER, GL_UNSIGNED_INT, bits, sizeof bits);
+    return 1.0 - double(std::bit_cast<float>(
+                     bits[cascade * (TARN_WAVE_LEVELS + 2) + TARN_WAVE_LEVELS + 1]));
 }
 
 } // namespace tarn::render

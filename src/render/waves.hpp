@@ -8,6 +8,7 @@
 #include "shared/wave_block.h"
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 
@@ -35,9 +36,10 @@ public:
     /// What a program that draws this sea must define.
     std::string defines() const;
 
-    /// Level 0 of a cascade: height [m], slope east, slope north, least eigenvalue of the
-    /// displacement's Jacobian; texels^2, row = y.
-    std::vector<glm::vec4> read(int cascade) const;
+    /// A cascade's height [m], slope east, slope north; texels^2, row = y. Waits for the GPU.
+    std::vector<glm::vec3> read(int cascade) const;
+    /// Least eigenvalue of the Jacobian of a cascade's displacement: folded where it is negative.
+    double least_eigenvalue(int cascade) const;
     /// GPU memory of spectra, transforms and textures.
     std::size_t bytes() const { return bytes_; }
 
@@ -52,7 +54,7 @@ private:
     waves::Sea sea_;
     Passes passes_;
     gpu::Buffer h0_, turns_, fields_, twiddles_, block_;
-    gpu::TextureLayers heights_;
+    gpu::TextureLayers heights_, slopes_;
     gpu::Texture2D amplitude_, table_, limits_;
     std::vector<glm::vec4> table_texels_;
     double time_s_ = 0.0;

@@ -2,7 +2,7 @@
 // needs OpenGL 4.5 and EGL, no GDAL and no OpenImageIO, so it runs on a bare GPU machine.
 //
 //   tarn_frame_bench [--side N,N,...] [--size WxH,WxH,...] [--view high,shore,dive]
-//                    [--intersection METHOD] [--frames N] [--json FILE] [--ppm PREFIX]
+//                    [--intersection METHOD] [--wind M/S] [--frames N] [--json FILE] [--ppm PREFIX]
 #include "bench/timing.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
                 views = "high,shore,dive";
     std::string json_path, ppm, method = scene::walk_methods().front().name;
     int frames = 41;
+    double wind = 0.0; // m/s; 0: calm
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
         if (i + 1 >= argc)
@@ -65,6 +66,8 @@ int run(int argc, char** argv) {
             views = value;
         else if (word == "--intersection")
             method = value;
+        else if (word == "--wind")
+            wind = std::atof(value.c_str());
         else if (word == "--frames")
             frames = std::max(1, std::atoi(value.c_str()));
         else if (word == "--json")
@@ -112,20 +115,43 @@ int run(int argc, char** argv) {
                     for (const scene::WalkMethod& m : scene::walk_methods())
                         if (method == m.name)
                             view.settings.walk = m.walk;
+                    if (wind > 0.0) {
+                        view.waves.model = waves::Model::jonswap;
+                        view.waves.wind_m_per_s = wind;
+                    }
                     renderer.prepare(view);
-                    const bench::Times t =
-                        bench::time_on_gpu([&] { renderer.draw_once(); }, frames);
+                    double time_s = 0.0;
+                    const bench::Times t = bench::time_on_gpu(
+                        [&] {
+                            renderer.move_waves(time_s += 1.0 / 60.0); // nothing where it is calm
+                            renderer.draw_once();
+                        },
+                        frames);
                     std::printf(
                         "%6s^2  %-5s  %-9s  %-12s  %9.3f ms  (quartiles %.3f to %.3f, %s)\n",
                         side.c_str(), name.c_str(), size.c_str(), mode.name, t.median_ms, t.low_ms,
                         t.high_ms, t.clock);
-                    json +=
-                        text(first ? "\n" : ",\n", "{\"field\": ", side, ", \"intersection\": \"",
-                             method, "\", \"view\": \"", name, "\", \"width\": ", w,
-                             ", \"height\": ", h, ", \"mode\": \"", mode.name,
-                             "\", \"median_ms\": ", t.median_ms, ", \"q1_ms\": ", t.low_ms,
-                             ", \"q3_ms\": ", t.high_ms, ", \"clock\": \"", t.clock, "\"}");
+                    json += text(first ? "\n" : ",\n", "{\"wind_m_per_s\": ", wind,
+                                 ", \"field\": ", side, ", \"intersection\": \"", method,
+                                 "\", \"view\": \"", name, "\", \"width\": ", w,
+                                 ", \"height\": ", h, ", \"mode\": \"", mode.name,
+                                 "\", \"median_ms\": ", t.median_ms, ", \"q1_ms\": ", t.low_ms,
+                                 ", \"q3_ms\": ", t.high_ms, ", \"clock\": \"", t.clock, "\"}");
                     first = false;
+                    if (mode.split && mode.shadows) {
+                        const auto parts = bench::time_parts(
+                            [&](const std::function<void(const char*)>& begins) {
+                                renderer.on_pass = begins;
+                                renderer.move_waves(time_s += 1.0 / 60.0);
+                                renderer.draw_once();
+                                renderer.on_pass = {};
+                            },
+                            frames);
+                        std::printf("              ");
+                        for (const bench::PartTime& part : parts)
+                            std::printf(" %s %.3f", part.name.c_str(), part.median_ms);
+                        std::printf("\n");
+                    }
                     if (mode.split && mode.shadows && size == split(sizes).front()) {
                         const Image image = renderer.draw(view);
                         glm::dvec3 sum(0.0);

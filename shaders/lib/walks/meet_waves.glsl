@@ -79,13 +79,18 @@ int meet_waves(sampler2D heights, sampler2DArray wave_heights, sampler2D amplitu
                             (dot(most, steep) + most.x * waves.counts.z) * most_fade * pace * (t_out - t) +
                             reach * (abs(bed_tilt - tilt) + 2.0 * abs(to_bed.curve - over_level.curve)) / waves.shore.x +
                             dot(abs(a_out - a_in), high);
-            float s = 0.0;
-            bool met = false;
-            for (int i = 0; i < 96 && s < s_stop; ++i) {
+            // Too low to be seen: a plane.
+            float s = reach * most_fade < near ? first_crossing(Gap(side * over_level.above, side * over_level.below, side * over_level.curve)) : 0.0;
+            bool met = s > 0.0 && s <= s_stop;
+            // Above the highest wave nothing but the ray and the fade close the gap.
+            float calm_closing = max(abs(tilt), abs(tilt + 2.0 * over_level.curve));
+            for (int i = 0; i < 96 && s < s_stop && !met; ++i) {
                 float level_gap = over_level.above + s * (tilt + s * over_level.curve);
                 float depth = to_bed.above + s * (bed_tilt + s * to_bed.curve) - level_gap;
                 float fade = wave_fade(waves, depth), gap = side * level_gap - reach * most_fade;
+                float pace_s = calm_closing;
                 if (gap <= 0.0) {
+                    pace_s = closing;
                     vec4 amplitude = fade * mix(a_in, a_out, s);
                     float eta = wave_height(wave_heights, table, waves, mix(at_in, at_out, s), footprint, amplitude);
                     gap = side * (level_gap - eta);
@@ -93,7 +98,7 @@ int meet_waves(sampler2D heights, sampler2DArray wave_heights, sampler2D amplitu
                     if (met)
                         break;
                 }
-                s += max(gap, 0.5 * near) / max(closing, 1e-9);
+                s += max(gap, 0.5 * near) / max(pace_s, 1e-9);
             }
             if (met) {
                 hit = Hit(t + s * (t_out - t), true, ivec2(cell + ray.base), clamp(mix(p_in, p_out, s), 0.0, 1.0));
