@@ -25,17 +25,27 @@ float wave_level(WaveBlock waves, int cascade, float footprint_m) {
 // What is left of a sine after a square filter: a Gaussian one of the same variance.
 float sine_share(vec2 k, float footprint_m) { return exp(-dot(k, k) * footprint_m * footprint_m / 24.0); }
 
-// wave_height — metres above the level.
-float wave_height(sampler2DArray heights, sampler2D table, WaveBlock waves, vec2 at_m, float footprint_m, vec4 amplitude) {
+// cascade_height — of one cascade at full amplitude [m], at a mip level.
+float cascade_height(sampler2DArray heights, WaveBlock waves, int cascade, vec2 at_m, float level) {
+    vec2 place = waves.patches[cascade].xy + at_m / waves.patches[cascade].z;
+    return textureLod(heights, vec3(place, float(cascade)), level).x;
+}
+
+// sine_height — of the sines together [m].
+float sine_height(sampler2D table, WaveBlock waves, vec2 at_m, float footprint_m, float amplitude) {
     float sum = 0.0;
-    for (int j = 0; j < TARN_CASCADES; ++j) {
-        vec2 place = waves.patches[j].xy + at_m / waves.patches[j].z;
-        sum += amplitude[j] * textureLod(heights, vec3(place, float(j)), wave_level(waves, j, footprint_m)).x;
-    }
     for (int i = 0; i < int(waves.counts.x); ++i) {
         vec4 sine = texelFetch(table, ivec2(i, 4), 0);
-        sum += amplitude.x * sine.z * sine_share(sine.xy, footprint_m) * cos(dot(sine.xy, at_m) + sine.w);
+        sum += amplitude * sine.z * sine_share(sine.xy, footprint_m) * cos(dot(sine.xy, at_m) + sine.w);
     }
+    return sum;
+}
+
+// wave_height — metres above the level.
+float wave_height(sampler2DArray heights, sampler2D table, WaveBlock waves, vec2 at_m, float footprint_m, vec4 amplitude) {
+    float sum = sine_height(table, waves, at_m, footprint_m, amplitude.x);
+    for (int j = 0; j < TARN_CASCADES; ++j)
+        sum += amplitude[j] * cascade_height(heights, waves, j, at_m, wave_level(waves, j, footprint_m));
     return sum;
 }
 

@@ -59,7 +59,8 @@ struct ViewBlock {
     vec4 ortho_lod;       // x: metres per pixel, yzw: -
     vec4 options;         // x: lift of shadow rays [m], y: level of the water the camera is in [m],
                           // z: 1 if that lake's bed is known, w: weight of this sample
-    vec4 offset;          // xy: position inside the pixel, z: index of the sample, w: -
+    vec4 offset;          // xy: position inside the pixel, z: index of the sample, w: how far the walk's water is
+                          // raised above its level, for waves [m]
     uvec4 counts;         // x: width, y: height [px], z: flags, w: lakes
     ivec4 tile;           // xy: first pixel, zw: size of the tile being drawn
     vec4 base;            // xy: node by the camera, z: 1 / spacing [1/m], w: -

@@ -116,8 +116,9 @@ std::string Renderer::walk_file() const {
 }
 
 const Renderer::WavyPasses& Renderer::wavy_passes() {
-    const std::string defined =
-        (rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "") + waves_->defines();
+    const std::string defined = (rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "") +
+                                waves_->defines() +
+                                (camera_in_slab_ ? "#define TARN_IN_SLAB 1\n" : "");
     const auto key = std::pair(walk_, defined);
     if (const auto known = wavy_passes_.find(key); known != wavy_passes_.end())
         return known->second;
@@ -127,7 +128,8 @@ const Renderer::WavyPasses& Renderer::wavy_passes() {
             {{"lib/walks/cone_map.glsl", "lib/walks/" + walk_file() + ".glsl"}}, defined));
     };
     return wavy_passes_
-        .emplace(key, WavyPasses{pass("primary"), pass("secondary"), pass("shadow"), pass("shade")})
+        .emplace(key, WavyPasses{pass("primary"), pass("surface"), pass("secondary"),
+                                 pass("shadow"), pass("shade")})
         .first->second;
 }
 
@@ -246,7 +248,8 @@ void Renderer::prepare(const scene::View& view) {
     const auto water = scene_.water_level_m(p.x, p.y);
     // Between trough and crest the waves decide where the camera is, asked of them below.
     double surface_m = water.value_or(0.0);
-    if (water && wavy() && std::abs(p.z - *water) <= lift_m_)
+    camera_in_slab_ = water && wavy() && std::abs(p.z - *water) <= lift_m_;
+    if (camera_in_slab_)
         surface_m += waves_->height_at({p.x, p.y}, *water - ground.elevation_m(p.x, p.y));
     if (water && p.z < surface_m) {
         flags |= TARN_FLAG_UNDER_WATER;
@@ -320,7 +323,7 @@ void Renderer::move_waves(double time_s) {
 
 void Renderer::set_sample(int sample, int samples) {
     const glm::dvec2 offset = scene::sample_offset(sample, samples);
-    block_.offset = {float(offset.x), float(offset.y), float(sample), 0.0f};
+    block_.offset = {float(offset.x), float(offset.y), float(sample), float(lift_m_)};
     block_.options.w = 1.0f / float(samples);
 }
 
@@ -341,6 +344,12 @@ void Renderer::draw_tile() {
     (wavy_ones ? wavy_ones->primary : calm.primary).use();
     glDispatchCompute(across, down, 1);
     glMemoryBarrier(images);
+    if (wavy_ones) {
+        begins("surface");
+        wavy_ones->surface.use();
+        glDispatchCompute(across, down, 1);
+        glMemoryBarrier(images);
+    }
     bind_walk(false);
     if (split) {
         begins("secondary");

@@ -91,7 +91,7 @@ private:
     };
     /// Those that know of waves, and the one that shades: a calm scene's programs hold none of it.
     struct WavyPasses {
-        gpu::ComputeProgram primary, secondary, shadow, shade;
+        gpu::ComputeProgram primary, surface, secondary, shadow, shade;
     };
 
     void upload_scene();
@@ -120,6 +120,7 @@ private:
     std::optional<WaveField> waves_;
     gpu::Texture2D surfaces_; ///< of the water met, for the passes after the first; with waves only
     double top_m_ = 0.0, water_top_m_ = 0.0; ///< highest node, above z = 0; highest level
+    bool camera_in_slab_ = false;            ///< between the lowest trough and the highest crest
     double lift_m_ = 0.0;                    ///< how far the walk's water is raised above its level
     scene::Walk walk_ = scene::Walk::cone_map;
     std::size_t heights_bytes_ = 0;

@@ -109,6 +109,7 @@ void WaveField::set(waves::Sea sea) {
             table_texels_[j * std::size_t(columns) + std::size_t(level)] = {
                 float(s.xx), float(s.xy), float(s.yy), 0.0f};
         }
+    table_.upload(GL_RGBA, GL_FLOAT, table_texels_.data());
     block_ = gpu::Buffer(sizeof(shared::WaveBlock), nullptr);
     gpu::check_gl("uploading the waves");
 }
@@ -124,15 +125,22 @@ void WaveField::move_to(double time_s) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_WAVE_TURNS, turns_.id());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_WAVE_FIELDS, fields_.id());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_TWIDDLES, twiddles_.id());
+    const auto begins = [this](const char* name) {
+        if (on_pass)
+            on_pass(name);
+    };
+    begins("rows");
     passes_.rows.use();
     glUniform1ui(0, waves::loop_fraction(time_s, sea_.settings.loop_s));
     set_uniform(1, per_cascade(sea_.cascades,
                                [](const waves::Cascade& c) { return 2.0 * pi / c.patch_m; }));
     glDispatchCompute(GLuint(n), GLuint(count), 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    begins("columns");
     passes_.columns.use();
     glDispatchCompute(GLuint(n / lanes_for(n)), GLuint(count * passes_.fields), 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    begins("surface");
     passes_.surface.use();
     set_uniform(0,
                 per_cascade(sea_.cascades, [](const waves::Cascade& c) { return c.choppiness; }));
@@ -144,6 +152,7 @@ void WaveField::move_to(double time_s) {
     slopes_.bind_image(TARN_IMAGE_WAVE_SLOPES, GL_WRITE_ONLY, 0);
     limits_.bind_image(TARN_IMAGE_WAVE_LIMITS, GL_READ_WRITE);
     glDispatchCompute(groups(n, 16), groups(n, 8), GLuint(count));
+    begins("levels");
     passes_.levels.use();
     heights_.bind(TARN_TEXTURE_WAVES);
     slopes_.bind(TARN_TEXTURE_SLOPES);
@@ -162,6 +171,7 @@ void WaveField::move_to(double time_s) {
         glDispatchCompute(across, across, GLuint(count));
     }
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    begins("end");
 }
 
 void WaveField::bind(glm::dvec2 base, double lift_m) {
@@ -185,7 +195,8 @@ void WaveField::bind(glm::dvec2 base, double lift_m) {
         height += w.amplitude_m;
         slope += w.amplitude_m * std::hypot(w.k_per_m.x, w.k_per_m.y);
     }
-    table_.upload(GL_RGBA, GL_FLOAT, table_texels_.data());
+    if (!sea_.sines.empty())
+        table_.upload(GL_RGBA, GL_FLOAT, table_texels_.data());
     block.counts = {float(sea_.sines.size()), float(height), float(slope), float(lift_m)};
     block.shore = {float(std::max(sea_.full_depth_m, 1e-6)), 0, 0, 0};
     const GridSize map = sea_.amplitude.size;

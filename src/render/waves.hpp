@@ -7,6 +7,7 @@
 
 #include "shared/wave_block.h"
 
+#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -23,6 +24,10 @@ public:
 
     /// Makes height and slope of every cascade for a time. Costs nothing for sines.
     void move_to(double time_s);
+
+    /// Called before each pass with its name, and with "end" after the last: for timing. May be
+    /// empty.
+    std::function<void(const char*)> on_pass;
 
     /// Binds block and textures.
     /// @param base      where positions count from: a node of the ground [scene metres]

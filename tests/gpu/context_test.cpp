@@ -32,7 +32,7 @@ TEST(Shaders, EveryPassCompiles) {
         ++passes;
     }
     EXPECT_GE(passes, 3);
-    for (const char* pass : {"primary", "secondary", "shadow", "shade"})
+    for (const char* pass : {"primary", "surface", "secondary", "shadow", "shade"})
         for (const char* cascades : {"0", "1", "4"})
             EXPECT_NO_THROW(gpu::ComputeProgram(gpu::load_shader(
                 TARN_SHADER_ROOT, text("passes/", pass, ".comp"), {},

@@ -6,7 +6,8 @@
 // approached in steps that they cannot rise through: gap over the closing speed, which the steepest slope
 // there is bounds (sphere tracing, Hart 1996; the safety radius of Baboud & Decoret for a dynamic surface).
 // Source  as said; limits from passes/wave_levels.comp, of the waves at this moment.
-// Fails   within a tenth of a pixel's footprint, where it stops; after 96 steps in one cell it stops where it is.
+// Fails   within a fifth of a pixel's footprint, where it stops; a ray that has made 96 steps in one cell without
+//         meeting anything goes on with the next cell.
 #include "lib/heightfield.glsl"
 #include "lib/waves.glsl"
 
@@ -16,12 +17,15 @@ const int met_nothing = 0, met_ground = 1, met_water = 2;
 //                  pixel's footprint across and along the view on level water.
 float wave_footprint(float pixel_rad, float path_m, float sink) { return pixel_rad * path_m * inversesqrt(max(abs(sink), 0.02)); }
 
-// wave_bounds — greatest |height| of each cascade at full amplitude, and the steepest slope (yzw unused by it).
-void wave_bounds(usampler2D limits, WaveBlock waves, float footprint_m, out vec4 high, out vec4 steep) {
+// wave_bounds — greatest |height| and steepest slope of each cascade at full amplitude, and the mip level for a
+//               footprint.
+void wave_bounds(usampler2D limits, WaveBlock waves, float footprint_m, out vec4 high, out vec4 steep, out vec4 levels) {
     high = vec4(0.0);
     steep = vec4(0.0);
+    levels = vec4(0.0);
     for (int j = 0; j < TARN_CASCADES; ++j) {
-        int level = int(min(wave_level(waves, j, footprint_m), float(TARN_WAVE_LEVELS - 1)));
+        levels[j] = wave_level(waves, j, footprint_m);
+        int level = int(min(levels[j], float(TARN_WAVE_LEVELS - 1)));
         high[j] = uintBitsToFloat(texelFetch(limits, ivec2(level, j), 0).r);
         float filtered = 2.83 * high[j] / (waves.patches[j].w * float(1 << level)); // between texels of that level
         steep[j] = min(uintBitsToFloat(texelFetch(limits, ivec2(TARN_WAVE_LEVELS, j), 0).r), filtered);
@@ -44,9 +48,9 @@ int meet_waves(sampler2D heights, sampler2DArray wave_heights, sampler2D amplitu
     vec2 cell = cell_at(span, span.t);
     float t = span.t, sink = ray.direction.z;
     float footprint = wave_footprint(pixel_rad, max(t, 0.1), sink);
-    float near = max(0.1 * footprint, 1e-4);
-    vec4 high, steep;
-    wave_bounds(limits, waves, footprint, high, steep);
+    float near = max(0.2 * footprint, 1e-4);
+    vec4 high, steep, levels;
+    wave_bounds(limits, waves, footprint, high, steep, levels);
     float pace = length(span.d) * spacing; // metres along the ground a metre of path
     for (int steps = int(field.cells.x + field.cells.y) + 8; steps >= 0; --steps) {
         vec2 t_border = borders(span, cell);
@@ -73,32 +77,43 @@ int meet_waves(sampler2D heights, sampler2DArray wave_heights, sampler2D amplitu
             float depth_in = to_bed.above - over_level.above, depth_out = to_bed.below - over_level.below;
             vec4 most = max(a_in, a_out);
             float most_fade = max(wave_fade(waves, depth_in), wave_fade(waves, depth_out));
-            float reach = dot(most, high) + most.x * waves.counts.y;
-            // Greatest closing speed over s in [0, 1]: the ray's, the waves', the fade's and the map's.
-            float closing = max(abs(tilt), abs(tilt + 2.0 * over_level.curve)) +
-                            (dot(most, steep) + most.x * waves.counts.z) * most_fade * pace * (t_out - t) +
-                            reach * (abs(bed_tilt - tilt) + 2.0 * abs(to_bed.curve - over_level.curve)) / waves.shore.x +
-                            dot(abs(a_out - a_in), high);
-            // Too low to be seen: a plane.
-            float s = reach * most_fade < near ? first_crossing(Gap(side * over_level.above, side * over_level.below, side * over_level.curve)) : 0.0;
-            bool met = s > 0.0 && s <= s_stop;
-            // Above the highest wave nothing but the ray and the fade close the gap.
+            // What the cascades after the first, after the second, ... can still add to the height; and how
+            // fast the gap to those before can close over s in [0, 1]: by the ray, the waves, the fade, the map.
+            vec4 tops = most * high;
+            vec4 rest = vec4(tops.y + tops.z + tops.w, tops.z + tops.w, tops.w, 0.0) * most_fade;
+            float sines = most.x * waves.counts.y, reach = (tops.x + sines) * most_fade + rest.x;
             float calm_closing = max(abs(tilt), abs(tilt + 2.0 * over_level.curve));
+            float stretch = pace * (t_out - t), thinning = (abs(bed_tilt - tilt) + 2.0 * abs(to_bed.curve - over_level.curve)) / waves.shore.x;
+            vec4 closing = most * (steep * (most_fade * stretch) + high * thinning) + abs(a_out - a_in) * high;
+            closing.x += calm_closing + most.x * (waves.counts.z * most_fade * stretch + waves.counts.y * thinning);
+            closing.y += closing.x;
+            closing.z += closing.y;
+            closing.w += closing.z;
+            // Too low to be seen: a plane.
+            float s = reach < near ? first_crossing(Gap(side * over_level.above, side * over_level.below, side * over_level.curve)) : 0.0;
+            bool met = s > 0.0 && s <= s_stop;
             for (int i = 0; i < 96 && s < s_stop && !met; ++i) {
                 float level_gap = over_level.above + s * (tilt + s * over_level.curve);
-                float depth = to_bed.above + s * (bed_tilt + s * to_bed.curve) - level_gap;
-                float fade = wave_fade(waves, depth), gap = side * level_gap - reach * most_fade;
-                float pace_s = calm_closing;
-                if (gap <= 0.0) {
-                    pace_s = closing;
-                    vec4 amplitude = fade * mix(a_in, a_out, s);
-                    float eta = wave_height(wave_heights, table, waves, mix(at_in, at_out, s), footprint, amplitude);
-                    gap = side * (level_gap - eta);
-                    met = gap <= near || i == 95;
+                float stride = (side * level_gap - reach) / calm_closing; // above the highest wave
+                if (stride <= 0.0) {
+                    float depth = to_bed.above + s * (bed_tilt + s * to_bed.curve) - level_gap;
+                    vec4 amplitude = wave_fade(waves, depth) * mix(a_in, a_out, s);
+                    vec2 at = mix(at_in, at_out, s);
+                    float gap = side * level_gap - side * sine_height(table, waves, at, footprint, amplitude.x);
+                    // Cascade by cascade, while what is known of the height is too little for a step.
+                    stride = 0.0;
+                    for (int j = 0; j < max(TARN_CASCADES, 1); ++j) {
+                        if (TARN_CASCADES > 0)
+                            gap -= side * amplitude[j] * cascade_height(wave_heights, waves, j, at, levels[j]);
+                        stride = max(stride, (gap - rest[j]) / closing[j]);
+                        if (gap - rest[j] > rest[j])
+                            break;
+                        met = gap <= near && j >= TARN_CASCADES - 1;
+                    }
                     if (met)
                         break;
                 }
-                s += max(gap, 0.5 * near) / max(pace_s, 1e-9);
+                s += max(stride, 0.5 * near / closing.x);
             }
             if (met) {
                 hit = Hit(t + s * (t_out - t), true, ivec2(cell + ray.base), clamp(mix(p_in, p_out, s), 0.0, 1.0));
