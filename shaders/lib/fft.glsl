@@ -1,4 +1,5 @@
-// lib/fft.glsl — Fourier transform of lines of N complex numbers, by the invocations of a workgroup together.
+// lib/fft.glsl — Fourier transform of lines of N pairs of complex numbers, two transforms side by side in xy and zw,
+// by the invocations of a workgroup together.
 // The one library file with a global: the lines are in shared memory. C++ twin: src/reference/fft.hpp
 //
 // A program defines TARN_FFT_N (a power of two, 16 to 2048) and TARN_FFT_LANES (lines side by side), has
@@ -6,9 +7,10 @@
 // Source  self-sorting radix-4 transform (Stockham; Govindaraju et al. 2008, HPC on GPUs), a last radix-2
 //         pass where N is no power of four. Twiddles come from a table, not from the driver's sine.
 
-shared vec2 fft_line[TARN_FFT_N * TARN_FFT_LANES];
+shared vec4 fft_line[TARN_FFT_N * TARN_FFT_LANES];
 
-vec2 complex_product(vec2 a, vec2 b) { return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
+// Both numbers of a pair times one.
+vec4 complex_product(vec4 a, vec2 b) { return a * b.x + vec4(-a.y, a.x, -a.w, a.z) * b.y; }
 
 // fft_inverse — in place: line[n] = sum over m of line[m] exp(2 pi i m n / N). Not divided by N.
 //
@@ -21,11 +23,12 @@ void fft_inverse(uint index, uint lane) {
     barrier();
     for (; done * 4u <= uint(TARN_FFT_N); done *= 4u) {
         uint k = index & (done - 1u), turn = k * (quarter / done);
-        vec2 a = fft_line[index * TARN_FFT_LANES + lane];
-        vec2 b = complex_product(fft_line[(index + quarter) * TARN_FFT_LANES + lane], TWIDDLE(turn));
-        vec2 c = complex_product(fft_line[(index + 2u * quarter) * TARN_FFT_LANES + lane], TWIDDLE(2u * turn));
-        vec2 d = complex_product(fft_line[(index + 3u * quarter) * TARN_FFT_LANES + lane], TWIDDLE(3u * turn));
-        vec2 ac = a + c, a_c = a - c, bd = b + d, b_d = vec2(-(b - d).y, (b - d).x); // i (b - d)
+        vec4 a = fft_line[index * TARN_FFT_LANES + lane];
+        vec4 b = complex_product(fft_line[(index + quarter) * TARN_FFT_LANES + lane], TWIDDLE(turn));
+        vec4 c = complex_product(fft_line[(index + 2u * quarter) * TARN_FFT_LANES + lane], TWIDDLE(2u * turn));
+        vec4 d = complex_product(fft_line[(index + 3u * quarter) * TARN_FFT_LANES + lane], TWIDDLE(3u * turn));
+        vec4 ac = a + c, a_c = a - c, bd = b + d, less = b - d;
+        vec4 b_d = vec4(-less.y, less.x, -less.w, less.z); // i (b - d)
         uint to = ((index - k) * 4u + k) * TARN_FFT_LANES + lane, stride = done * TARN_FFT_LANES;
         barrier();
         fft_line[to] = ac + bd;
@@ -37,8 +40,8 @@ void fft_inverse(uint index, uint lane) {
     if (done < uint(TARN_FFT_N)) {
         const uint middle = 2u * quarter;
         for (uint j = index; j < middle; j += quarter) { // each pair stays in its places
-            vec2 a = fft_line[j * TARN_FFT_LANES + lane];
-            vec2 b = complex_product(fft_line[(j + middle) * TARN_FFT_LANES + lane], TWIDDLE(j));
+            vec4 a = fft_line[j * TARN_FFT_LANES + lane];
+            vec4 b = complex_product(fft_line[(j + middle) * TARN_FFT_LANES + lane], TWIDDLE(j));
             fft_line[j * TARN_FFT_LANES + lane] = a + b;
             fft_line[(j + middle) * TARN_FFT_LANES + lane] = a - b;
         }

@@ -9,7 +9,7 @@
 #define TARN_FFT_LANES 4
 #endif
 layout(local_size_x = TARN_FFT_LANES, local_size_y = TARN_FFT_N / 4) in;
-layout(binding = TARN_BUFFER_WAVE_FIELDS, std430) buffer Fields { vec2 fields[]; };
+layout(binding = TARN_BUFFER_WAVE_FIELDS, std430) buffer Fields { vec4 fields[]; };
 layout(binding = TARN_BUFFER_TWIDDLES, std430) readonly buffer Twiddles { vec2 twiddles[]; };
 #define TWIDDLE(n) twiddles[n]
 #include "lib/fft.glsl"

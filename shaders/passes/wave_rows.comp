@@ -2,21 +2,22 @@
 // passes/wave_rows.comp — the spectrum at a time, transformed along x.
 // Reads h0 and turns; writes fields. A workgroup a row (x) and cascade (y).
 //
-// Real fields travel in pairs, one in the real and one in the imaginary part:
-//   0  height, d Dx / dy   1  slopes   2  displacements Dx, Dy   3  d Dx / dx, d Dy / dy
+// Real fields travel in pairs, one in the real and one in the imaginary part, and pairs in twos:
+//   0  height, d Dx / dy; slopes   1  displacements Dx, Dy; d Dx / dx, d Dy / dy
 // D = i k / |k| h: towards the crests. (Tessendorf 2001 prints -i in eq. 29, which flattens them.)
 #include "shared/wave_block.h"
 #ifndef TARN_FFT_N
 #define TARN_FFT_N 512
 #endif
 #ifndef TARN_WAVE_FIELDS
-#define TARN_WAVE_FIELDS 4
+#define TARN_WAVE_FIELDS 2 // pairs of pairs: 1 without displacement
 #endif
 layout(local_size_x = TARN_FFT_N / 4) in;
 layout(binding = TARN_BUFFER_WAVE_H0, std430) readonly buffer H0 { vec4 h0[]; };
 layout(binding = TARN_BUFFER_WAVE_TURNS, std430) readonly buffer Turns { uint turns[]; };
-layout(binding = TARN_BUFFER_WAVE_FIELDS, std430) writeonly buffer Fields { vec2 fields[]; };
+layout(binding = TARN_BUFFER_WAVE_FIELDS, std430) writeonly buffer Fields { vec4 fields[]; };
 layout(binding = TARN_BUFFER_TWIDDLES, std430) readonly buffer Twiddles { vec2 twiddles[]; };
+layout(binding = TARN_IMAGE_WAVE_LIMITS, r32ui) uniform writeonly uimage2D limits; // made anew further on
 layout(location = 0) uniform uint now;    // of the loop, in 2^-32
 layout(location = 1) uniform vec4 stride; // of wave vectors in each cascade [rad/m]
 #define TWIDDLE(n) twiddles[n]
@@ -44,21 +45,15 @@ void main() {
                        both.y * c - both.x * s + both.w * c + both.z * s);
         k[part] = vec2(dk * float(col < n / 2u ? int(col) : int(col) - int(n)), ky);
     }
+    if (row == 0u && index < uint(TARN_WAVE_LEVELS + 2))
+        imageStore(limits, ivec2(index, cascade), uvec4(0u));
     for (int field = 0; field < TARN_WAVE_FIELDS; ++field) {
         barrier();
         for (int part = 0; part < 4; ++part) {
-            vec2 q = k[part], ih = times_i(h[part]);
-            float shorter = 1.0 / max(length(q), 1e-20);
-            vec2 value;
-            if (field == 0)
-                value = pair(h[part], -q.x * q.y * shorter * h[part]);
-            else if (field == 1)
-                value = pair(q.x * ih, q.y * ih);
-            else if (field == 2)
-                value = pair(q.x * shorter * ih, q.y * shorter * ih);
-            else
-                value = pair(-q.x * q.x * shorter * h[part], -q.y * q.y * shorter * h[part]);
-            fft_line[index + uint(part) * quarter] = value;
+            vec2 q = k[part], along = q / max(length(q), 1e-20), ih = times_i(h[part]);
+            fft_line[index + uint(part) * quarter] =
+                field == 0 ? vec4(pair(h[part], -along.x * q.y * h[part]), pair(q.x * ih, q.y * ih))
+                           : vec4(pair(along.x * ih, along.y * ih), pair(-q.x * along.x * h[part], -q.y * along.y * h[part]));
         }
         fft_inverse(index, 0u);
         uint out_at = ((cascade * uint(TARN_WAVE_FIELDS) + uint(field)) * n + row) * n;

@@ -11,10 +11,10 @@
 #define TARN_FFT_N 512
 #endif
 #ifndef TARN_WAVE_FIELDS
-#define TARN_WAVE_FIELDS 4
+#define TARN_WAVE_FIELDS 2 // pairs of pairs: 1 without displacement
 #endif
 layout(local_size_x = 16, local_size_y = 8) in;
-layout(binding = TARN_BUFFER_WAVE_FIELDS, std430) readonly buffer Fields { vec2 fields[]; };
+layout(binding = TARN_BUFFER_WAVE_FIELDS, std430) readonly buffer Fields { vec4 fields[]; };
 layout(binding = TARN_IMAGE_WAVE_HEIGHTS, r32f) uniform writeonly image2DArray heights;
 layout(binding = TARN_IMAGE_WAVE_SLOPES, rg16f) uniform writeonly image2DArray slopes;
 layout(binding = TARN_IMAGE_WAVE_LIMITS, r32ui) uniform uimage2D limits;
@@ -31,7 +31,7 @@ uint place(uint cascade, uint field, ivec2 at) {
 }
 
 // Bilinear, in texels.
-vec2 sampled(uint cascade, uint field, vec2 at) {
+vec4 sampled(uint cascade, uint field, vec2 at) {
     vec2 whole = floor(at), part = at - whole;
     ivec2 i = ivec2(whole);
     return mix(mix(fields[place(cascade, field, i)], fields[place(cascade, field, i + ivec2(1, 0))], part.x),
@@ -45,33 +45,36 @@ void main() {
     float height;
     vec2 slope;
     float least = 1.0;
-#if TARN_WAVE_FIELDS == 4
+#if TARN_WAVE_FIELDS == 2
     float chop = choppiness[cascade], scale = chop * per_m[cascade];
     vec2 from = vec2(texel);
+    vec4 shift;  // Dx, Dy, d Dx / dx, d Dy / dy
     for (int i = 0; i < 10; ++i) {
-        vec2 off = vec2(texel) - from - scale * sampled(cascade, 2u, from);
+        shift = sampled(cascade, 1u, from);
+        vec2 off = vec2(texel) - from - scale * shift.xy;
         if (dot(off, off) < 1e-4) // a hundredth of a texel
             break;
         if (i >= 2) { // where substitution is slow, the displacement's own slope helps (Newton)
             float xy = chop * sampled(cascade, 0u, from).y;
-            vec2 diagonal = 1.0 + chop * sampled(cascade, 3u, from);
+            vec2 diagonal = 1.0 + chop * shift.zw;
             off = vec2(diagonal.y * off.x - xy * off.y, diagonal.x * off.y - xy * off.x) /
                   max(diagonal.x * diagonal.y - xy * xy, 0.05);
         }
         from += off;
     }
-    vec2 height_and_xy = sampled(cascade, 0u, from), diagonal = sampled(cascade, 3u, from);
-    slope = sampled(cascade, 1u, from);
-    float xx = 1.0 + chop * diagonal.x, yy = 1.0 + chop * diagonal.y, xy = chop * height_and_xy.y;
+    vec4 rise = sampled(cascade, 0u, from); // height, d Dx / dy, slopes
+    slope = rise.zw;
+    float xx = 1.0 + chop * shift.z, yy = 1.0 + chop * shift.w, xy = chop * rise.y;
     float middle = 0.5 * (xx + yy), reach = length(vec2(0.5 * (xx - yy), xy));
     least = middle - reach;
     // A fold would turn slopes over; held where the surface is steep but still a height field.
     float determinant = max(least, 0.05) * max(middle + reach, 0.05);
     slope = vec2(yy * slope.x - xy * slope.y, xx * slope.y - xy * slope.x) / determinant;
-    height = height_and_xy.x;
+    height = rise.x;
 #else
-    height = fields[place(cascade, 0u, texel)].x;
-    slope = fields[place(cascade, 1u, texel)];
+    vec4 rise = fields[place(cascade, 0u, texel)];
+    height = rise.x;
+    slope = rise.zw;
 #endif
     height = clamp(height, -bound[cascade], bound[cascade]);
     imageStore(heights, ivec3(texel, int(cascade)), vec4(height));

@@ -12,7 +12,7 @@ using vec4 = glm::vec4;
 #define TARN_BLOCK_WAVES 1          // uniform block WaveBlock
 #define TARN_BUFFER_WAVE_H0 3       // vec4: h0(k), conj(h0(-k))
 #define TARN_BUFFER_WAVE_TURNS 4    // uint: omega in turns a loop
-#define TARN_BUFFER_WAVE_FIELDS 5   // vec2: transforms, [cascade][field][row][column]
+#define TARN_BUFFER_WAVE_FIELDS 5   // vec4: transforms, [cascade][field][row][column]
 #define TARN_BUFFER_TWIDDLES 6      // vec2: exp(2 pi i n / N)
 #define TARN_TEXTURE_WAVES 6        // R32F array: height [m]; a layer a cascade
 #define TARN_TEXTURE_SLOPES 10      // RG16F array: rise per metre east and north

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 namespace tarn::render {
 
@@ -15,9 +16,9 @@ constexpr int table_rows = waves::most_cascades + 1;
 
 GLuint groups(int items, int of) { return static_cast<GLuint>((items + of - 1) / of); }
 
-/// Columns transformed side by side: four fill a sector of memory; large ones must fit in shared
-/// memory (32 KB are guaranteed) and in 1024 invocations.
-int lanes_for(int texels) { return std::min(4, 4096 / texels); }
+/// Columns transformed side by side, so that memory is read in whole sectors; large ones must fit
+/// in shared memory (32 KB are guaranteed).
+int lanes_for(int texels) { return std::min(4, 2048 / texels); }
 
 double fraction(double v) { return v - std::floor(v); }
 
@@ -44,7 +45,7 @@ void WaveField::build_passes() {
     bool choppy = false;
     for (const waves::Cascade& c : sea_.cascades)
         choppy |= c.choppiness > 0.0;
-    const int fields = choppy ? 4 : 2;
+    const int fields = choppy ? 2 : 1;
     if (passes_.texels == texels && passes_.fields == fields)
         return;
     const auto root = gpu::shader_root();
@@ -83,7 +84,7 @@ void WaveField::set(waves::Sea sea) {
         h0_ = gpu::Buffer(texels * std::size_t(count) * sizeof(glm::vec4), nullptr);
         turns_ = gpu::Buffer(texels * std::size_t(count) * sizeof(std::uint32_t), nullptr);
         fields_ =
-            gpu::Buffer(texels * std::size_t(count * passes_.fields) * sizeof(glm::vec2), nullptr);
+            gpu::Buffer(texels * std::size_t(count * passes_.fields) * sizeof(glm::vec4), nullptr);
         heights_ = gpu::TextureLayers(GL_R32F, n, count, "waves");
         slopes_ = gpu::TextureLayers(GL_RG16F, n, count, "slopes of waves");
         for (int j = 0; j < count; ++j) {
@@ -94,7 +95,7 @@ void WaveField::set(waves::Sea sea) {
                                  GLintptr(texels * std::size_t(j) * sizeof(std::uint32_t)),
                                  GLsizeiptr(texels * sizeof(std::uint32_t)), c.turns.data());
         }
-        bytes_ = texels * std::size_t(count) * (20 + std::size_t(passes_.fields) * 8 + 8 * 4 / 3);
+        bytes_ = texels * std::size_t(count) * (20 + std::size_t(passes_.fields) * 16 + 8 * 4 / 3);
     }
     const GridSize map = sea_.amplitude.size;
     amplitude_ =
@@ -110,7 +111,8 @@ void WaveField::set(waves::Sea sea) {
                 float(s.xx), float(s.xy), float(s.yy), 0.0f};
         }
     table_.upload(GL_RGBA, GL_FLOAT, table_texels_.data());
-    block_ = gpu::Buffer(sizeof(shared::WaveBlock), nullptr);
+    last_block_ = {};
+    block_ = gpu::Buffer(sizeof(shared::WaveBlock), &last_block_);
     gpu::check_gl("uploading the waves");
 }
 
@@ -129,6 +131,7 @@ void WaveField::move_to(double time_s) {
         if (on_pass)
             on_pass(name);
     };
+    limits_.bind_image(TARN_IMAGE_WAVE_LIMITS, GL_READ_WRITE);
     begins("rows");
     passes_.rows.use();
     glUniform1ui(0, waves::loop_fraction(time_s, sea_.settings.loop_s));
@@ -139,18 +142,15 @@ void WaveField::move_to(double time_s) {
     begins("columns");
     passes_.columns.use();
     glDispatchCompute(GLuint(n / lanes_for(n)), GLuint(count * passes_.fields), 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     begins("surface");
     passes_.surface.use();
     set_uniform(0,
                 per_cascade(sea_.cascades, [](const waves::Cascade& c) { return c.choppiness; }));
     set_uniform(1, per_cascade(sea_.cascades, [](const waves::Cascade& c) { return c.bound_m; }));
     set_uniform(2, per_m);
-    const GLuint zero = 0;
-    glClearTexImage(limits_.id(), 0, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
     heights_.bind_image(TARN_IMAGE_WAVE_HEIGHTS, GL_WRITE_ONLY, 0);
     slopes_.bind_image(TARN_IMAGE_WAVE_SLOPES, GL_WRITE_ONLY, 0);
-    limits_.bind_image(TARN_IMAGE_WAVE_LIMITS, GL_READ_WRITE);
     glDispatchCompute(groups(n, 16), groups(n, 8), GLuint(count));
     begins("levels");
     passes_.levels.use();
@@ -205,7 +205,10 @@ void WaveField::bind(glm::dvec2 base, double lift_m) {
                  float((sea_.amplitude_north_m - base.y) / high), float(1.0 / wide),
                  float(-1.0 / high)};
     block.rough = {float(sea_.roughness.xx), float(sea_.roughness.xy), float(sea_.roughness.yy), 0};
-    block_.write(&block, sizeof block);
+    if (std::memcmp(&block, &last_block_, sizeof block) != 0) {
+        block_.write(&block, sizeof block);
+        last_block_ = block;
+    }
     glBindBufferBase(GL_UNIFORM_BUFFER, TARN_BLOCK_WAVES, block_.id());
     heights_.bind(TARN_TEXTURE_WAVES);
     slopes_.bind(TARN_TEXTURE_SLOPES);

@@ -62,6 +62,7 @@ private:
     gpu::TextureLayers heights_, slopes_;
     gpu::Texture2D amplitude_, table_, limits_;
     std::vector<glm::vec4> table_texels_;
+    shared::WaveBlock last_block_{};
     double time_s_ = 0.0;
     std::size_t bytes_ = 0;
 };

@@ -48,7 +48,7 @@ double passed(glm::dvec2 k, double texel_m, int level) {
 
 /// Adds what the filters take from the waves of a density.
 void count_unresolved(Cascade& c, const Spectrum& spectrum) {
-    const int steps = 240, angles = 48;
+    const int steps = 96, angles = 36;
     const double stride = std::log(c.high_k / c.low_k) / steps;
     const glm::dvec2 along = spectrum.towards(), across{-along.y, along.x};
     for (int i = 0; i < steps; ++i) {
@@ -530,20 +530,21 @@ Sea make_sea(const Heightfield& ground, const Heightfield& water,
             sea.report.depth_m = depth_m;
         }
     }
-    double longest = 0.0, shortest = 1e9, choppiness = settings.choppiness;
+    double longest = 0.0, shortest = 1e9, choppiness = settings.choppiness, slowest = 1e9;
+    std::size_t stuck = 0;
     for (const Cascade& c : sea.cascades) {
         longest = std::max(longest, 2.0 * pi / c.low_k);
         shortest = std::min(shortest, 2.0 * pi / c.high_k);
         choppiness = std::min(choppiness, c.choppiness);
         sea.report.drawn_slope += c.moments.slope();
-        std::size_t stuck = 0;
         for (std::size_t i = 0; i < c.turns.size(); ++i)
             stuck += c.turns[i] == 0 && (c.h0[i].x != 0.0f || c.h0[i].y != 0.0f);
-        if (stuck > 0)
-            note(text("the loop of ", settings.loop_s, " s is shorter than twice the period of ",
-                      stuck, " waves: those stand still; a loop of ",
-                      std::ceil(4.0 * pi / omega_per_s(c.low_k, depth_m)), " s moves them all"));
+        slowest = std::min(slowest, omega_per_s(c.low_k, depth_m));
     }
+    if (stuck > 0)
+        note(text("the loop of ", settings.loop_s, " s is shorter than twice the period of ", stuck,
+                  " waves: those stand still; a loop of ", std::ceil(4.0 * pi / slowest),
+                  " s moves them all"));
     double sine_variance = 0.0, sine_slope = 0.0;
     for (const SineWave& w : sea.sines) {
         const double k = std::hypot(w.k_per_m.x, w.k_per_m.y);

@@ -72,6 +72,7 @@ public:
 
 private:
     double uncut(double k_per_m) const;
+    double total_slope() const; ///< moments().slope() without its directions
     Model model_;
     glm::dvec2 towards_;
     double depth_m_, exponent_, exponent_norm_ = 1.0;

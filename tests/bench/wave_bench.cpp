@@ -109,8 +109,9 @@ int run(int argc, char** argv) {
                 s.choppiness = choppiness;
                 render::WaveField field;
                 field.set(waves::make_sea(scene.ground, scene.water, scene.lakes, s));
-                const int fields = choppiness > 0.0 ? 4 : 2,
-                          cascades = int(field.sea().cascades.size());
+                const int fields = choppiness > 0.0 ? 4 : 2, // complex ones
+
+                    cascades = int(field.sea().cascades.size());
                 double time_s = 0.0;
                 const bench::Times t =
                     bench::time_on_gpu([&] { field.move_to(time_s += 0.1); }, frames);

@@ -62,10 +62,10 @@ TEST(WavesGpu, TransformsAgreeWithFftw) {
                 const double count = double(got.size());
                 EXPECT_LT(std::sqrt(height / count), 1e-4 * rms(expected.height))
                     << texels << " " << time;
-                // Slopes are kept in 16-bit floats: steps of a 2048th, a root of twelve less on
-                // average.
+                // Slopes are kept in 16-bit floats: steps of a 2048th, which software GL
+                // cuts off.
                 EXPECT_LT(std::sqrt(slope / count),
-                          2.5e-4 * std::hypot(rms(expected.slope_x), rms(expected.slope_y)))
+                          5e-4 * std::hypot(rms(expected.slope_x), rms(expected.slope_y)))
                     << texels << " " << time;
             }
         }
@@ -124,7 +124,8 @@ TEST(WavesGpu, HeightsAreGaussianWithTheSpectrumsVariance) {
     test_support::context();
     waves::Settings s = windy(waves::Model::jonswap, 512, 3);
     s.choppiness = 0.0;
-    double variance = 0.0, slope = 0.0, third = 0.0, fourth = 0.0, count = 0.0, samples = 0.0;
+    std::vector<double> each; // variance of each sea
+    double variance = 0.0, slope = 0.0, third = 0.0, fourth = 0.0, samples = 0.0;
     render::WaveField field;
     waves::Sea sea;
     for (std::uint32_t seed = 1; seed <= 12; ++seed) {
@@ -142,13 +143,15 @@ TEST(WavesGpu, HeightsAreGaussianWithTheSpectrumsVariance) {
                 sum[i] += texels[i].x;
                 slope += double(texels[i].y) * texels[i].y + double(texels[i].z) * texels[i].z;
             }
+        double here = 0.0;
         for (const double h : sum) {
-            variance += h * h;
+            here += h * h;
             third += h * h * h;
             fourth += h * h * h * h;
         }
+        variance += here;
+        each.push_back(here / double(sum.size()));
         samples += double(sum.size());
-        count += 1.0;
     }
     variance /= samples;
     slope /= samples;
@@ -157,9 +160,14 @@ TEST(WavesGpu, HeightsAreGaussianWithTheSpectrumsVariance) {
         expected += c.moments.height;
         expected_slope += c.moments.slope();
     }
-    // Twelve seas of some thousand strong waves each: 1 % is about one and a half standard
-    // deviations of the heights' variance; the slopes, of far more waves, are nearer.
-    EXPECT_NEAR(variance / expected, 1.0, 0.015);
+    // A sea of finite extent has its own variance: the mean over twelve, within three of its
+    // standard errors. The slopes, of far more waves, are nearer.
+    double spread = 0.0;
+    for (const double v : each)
+        spread += std::pow(v - variance, 2);
+    const double error = std::sqrt(spread / double(each.size() - 1) / double(each.size()));
+    EXPECT_LT(error, 0.015 * expected);
+    EXPECT_NEAR(variance, expected, 3.0 * error);
     EXPECT_NEAR(slope / expected_slope, 1.0, 0.01);
     EXPECT_NEAR(third / samples / std::pow(variance, 1.5), 0.0, 0.03);
     EXPECT_NEAR(fourth / samples / (variance * variance), 3.0, 0.05);
