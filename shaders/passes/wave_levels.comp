@@ -1,28 +1,28 @@
 #version 450 core
-// passes/wave_levels.comp — up to three mip levels of the waves' textures from the one below them, and how high
+// passes/wave_levels.comp — up to four mip levels of the waves' textures from the one below them, and how high
 // and steep the water is at each: the walk's bounds follow the waves that are there.
 // Reads level `source`; writes the next `levels`, and limits. A workgroup 16 x 16 texels and a cascade (z).
 #include "shared/wave_block.h"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = TARN_TEXTURE_WAVES) uniform sampler2DArray waves;
 layout(binding = TARN_TEXTURE_SLOPES) uniform sampler2DArray slopes;
-layout(binding = TARN_IMAGE_WAVE_HEIGHTS, r32f) uniform writeonly image2DArray coarser[3];
-layout(binding = TARN_IMAGE_WAVE_SLOPES, rg16f) uniform writeonly image2DArray coarser_slopes[3];
-layout(binding = TARN_IMAGE_WAVE_LIMITS, r32ui) uniform uimage2D limits;
+layout(binding = TARN_IMAGE_WAVE_HEIGHTS, r32f) uniform writeonly image2DArray coarser[4];
+layout(binding = TARN_IMAGE_WAVE_SLOPES, rg16f) uniform writeonly image2DArray coarser_slopes[4];
+layout(binding = TARN_BUFFER_WAVE_LIMITS, std430) buffer Limits { uint limits[]; };
 layout(location = 0) uniform int source;
 layout(location = 1) uniform int levels;
 layout(location = 2) uniform vec4 per_m; // texels of level 0 a metre
 shared vec3 tile[64];
-shared uint highest[4];  // of the source and of the levels made here
+shared uint highest[5];  // of the source and of the levels made here
 shared uint steepest;
 
 void main() {
     int cascade = int(gl_GlobalInvocationID.z), side = textureSize(waves, source).x;
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     uint index = gl_LocalInvocationIndex;
-    if (index < 4u)
+    if (index < 5u)
         highest[index] = 0u;
-    if (index == 4u)
+    if (index == 5u)
         steepest = 0u;
     barrier();
     vec3 sum = vec3(0.0);
@@ -61,9 +61,10 @@ void main() {
                           tile[16 * local.y + 8 + 2 * local.x] + tile[16 * local.y + 9 + 2 * local.x]);
         barrier();
     }
+    uint first = uint(cascade * TARN_WAVE_LIMITS);
     if (index <= uint(levels) && (index > 0u || source == 0))
-        imageAtomicMax(limits, ivec2(source + int(index), cascade), highest[index]);
+        atomicMax(limits[first + uint(source) + index], highest[index]);
     if (index == 0u && source == 0) // no texel's patch is steeper than the steepest edges on both axes together
-        imageAtomicMax(limits, ivec2(TARN_WAVE_LEVELS, cascade),
-                       floatBitsToUint(1.4143 * uintBitsToFloat(steepest) * per_m[cascade]));
+        atomicMax(limits[first + uint(TARN_WAVE_LEVELS)],
+                  floatBitsToUint(1.4143 * uintBitsToFloat(steepest) * per_m[cascade]));
 }

@@ -17,7 +17,7 @@ layout(binding = TARN_BUFFER_WAVE_H0, std430) readonly buffer H0 { vec4 h0[]; };
 layout(binding = TARN_BUFFER_WAVE_TURNS, std430) readonly buffer Turns { uint turns[]; };
 layout(binding = TARN_BUFFER_WAVE_FIELDS, std430) writeonly buffer Fields { vec4 fields[]; };
 layout(binding = TARN_BUFFER_TWIDDLES, std430) readonly buffer Twiddles { vec2 twiddles[]; };
-layout(binding = TARN_IMAGE_WAVE_LIMITS, r32ui) uniform writeonly uimage2D limits; // made anew further on
+layout(binding = TARN_BUFFER_WAVE_LIMITS, std430) writeonly buffer Limits { uint limits[]; }; // made anew further on
 layout(location = 0) uniform uint now;    // of the loop, in 2^-32
 layout(location = 1) uniform vec4 stride; // of wave vectors in each cascade [rad/m]
 #define TWIDDLE(n) twiddles[n]
@@ -45,8 +45,8 @@ void main() {
                        both.y * c - both.x * s + both.w * c + both.z * s);
         k[part] = vec2(dk * float(col < n / 2u ? int(col) : int(col) - int(n)), ky);
     }
-    if (row == 0u && index < uint(TARN_WAVE_LEVELS + 2))
-        imageStore(limits, ivec2(index, cascade), uvec4(0u));
+    if (row == 0u && index < uint(TARN_WAVE_LIMITS))
+        limits[cascade * uint(TARN_WAVE_LIMITS) + index] = 0u;
     for (int field = 0; field < TARN_WAVE_FIELDS; ++field) {
         barrier();
         for (int part = 0; part < 4; ++part) {

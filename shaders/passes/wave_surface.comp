@@ -17,7 +17,7 @@ layout(local_size_x = 16, local_size_y = 8) in;
 layout(binding = TARN_BUFFER_WAVE_FIELDS, std430) readonly buffer Fields { vec4 fields[]; };
 layout(binding = TARN_IMAGE_WAVE_HEIGHTS, r32f) uniform writeonly image2DArray heights;
 layout(binding = TARN_IMAGE_WAVE_SLOPES, rg16f) uniform writeonly image2DArray slopes;
-layout(binding = TARN_IMAGE_WAVE_LIMITS, r32ui) uniform uimage2D limits;
+layout(binding = TARN_BUFFER_WAVE_LIMITS, std430) buffer Limits { uint limits[]; };
 layout(location = 0) uniform vec4 choppiness;
 layout(location = 1) uniform vec4 bound;  // on |height| [m]
 layout(location = 2) uniform vec4 per_m;  // texels a metre
@@ -85,5 +85,5 @@ void main() {
     atomicMax(folded, floatBitsToUint(max(1.0 - least, 0.0)));
     barrier();
     if (gl_LocalInvocationIndex == 0u)
-        imageAtomicMax(limits, ivec2(TARN_WAVE_LEVELS + 1, int(cascade)), folded);
+        atomicMax(limits[cascade * uint(TARN_WAVE_LIMITS) + uint(TARN_WAVE_LEVELS + 1)], folded);
 }

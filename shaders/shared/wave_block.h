@@ -19,15 +19,16 @@ using vec4 = glm::vec4;
 #define TARN_TEXTURE_AMPLITUDE 7    // RGBA8: share of each cascade's height at a place
 #define TARN_TEXTURE_WAVE_TABLE 8   // RGBA32F: rows 0-3 covariance taken away by filter 2^column texels;
                                     // row 4 the sines: k, amplitude, phase near the base
-#define TARN_TEXTURE_WAVE_LIMITS 9  // R32UI, floats' bits: greatest |height| by level (column) and cascade (row);
-                                    // then the steepest slope between texels, and one minus the least
+#define TARN_TEXTURE_WAVE_LIMITS 9  // TARN_BUFFER_WAVE_LIMITS, to be read
+#define TARN_BUFFER_WAVE_LIMITS 7   // uint, floats' bits, TARN_WAVE_LIMITS of each cascade: greatest |height| of
+                                    // each level; the steepest slope between texels; one minus the least
                                     // eigenvalue of the displacement's Jacobian
 #define TARN_IMAGE_SURFACE 7        // rgba32ui: the surface met, packed (lib/waves.glsl)
-#define TARN_IMAGE_WAVE_HEIGHTS 0   // 0-2: r32f arrays, levels being written
-#define TARN_IMAGE_WAVE_SLOPES 3    // 3-5: rg16f arrays
-#define TARN_IMAGE_WAVE_LIMITS 6    // r32ui
+#define TARN_IMAGE_WAVE_HEIGHTS 0   // 0-3: r32f arrays, levels being written
+#define TARN_IMAGE_WAVE_SLOPES 4    // 4-7: rg16f arrays
 
-#define TARN_WAVE_LEVELS 12         // columns of the table and the limits, less the slope's
+#define TARN_WAVE_LEVELS 12         // columns of the table
+#define TARN_WAVE_LIMITS 14
 
 struct WaveBlock {
     vec4 patches[4]; // xy: place of the base in the patch [sides], z: side [m], w: side of a texel [m]

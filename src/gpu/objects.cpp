@@ -46,7 +46,7 @@ void Texture2D::download(GLenum components, GLenum type, void* out, std::size_t 
 
 TextureLayers::TextureLayers(GLenum format, int side_px, int layers, const std::string& label)
     : format_(format), side_px_(side_px), layers_(layers), levels_(1) {
-    while (side_px >> levels_ > 0)
+    while (side_px >> (levels_ + 1) > 0) // to 2 x 2: one texel would say nothing but the mean
         ++levels_;
     GLuint id = 0;
     glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
@@ -77,6 +77,13 @@ Buffer::Buffer(std::size_t bytes, const void* data) {
     glCreateBuffers(1, &id);
     name_ = Name<delete_buffer>(id);
     glNamedBufferStorage(id, GLsizeiptr(bytes), data, GL_DYNAMIC_STORAGE_BIT);
+}
+
+BufferTexture::BufferTexture(GLenum format, const Buffer& buffer) {
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
+    name_ = Name<delete_texture>(id);
+    glTextureBuffer(id, format, buffer.id());
 }
 
 Timer::Timer() {

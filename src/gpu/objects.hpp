@@ -121,6 +121,18 @@ private:
     Name<delete_buffer> name_;
 };
 
+/// A buffer as shaders look it up: one texel after the other.
+class BufferTexture {
+public:
+    BufferTexture() = default;
+    /// @param buffer  must outlive this
+    BufferTexture(GLenum format, const Buffer& buffer);
+    void bind(GLuint unit) const { glBindTextureUnit(unit, name_.get()); }
+
+private:
+    Name<delete_texture> name_;
+};
+
 /// GPU time between start() and stop().
 class Timer {
 public:

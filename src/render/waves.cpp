@@ -72,8 +72,9 @@ void WaveField::set(waves::Sea sea) {
     if (sea_.still())
         return;
     bytes_ = 0;
-    limits_ = gpu::Texture2D(GL_R32UI, TARN_WAVE_LEVELS + 2, waves::most_cascades, 1,
-                             gpu::Filter::nearest, "wave limits");
+    const std::vector<std::uint32_t> zeros(waves::most_cascades * TARN_WAVE_LIMITS, 0u);
+    limits_ = gpu::Buffer(zeros.size() * sizeof zeros[0], zeros.data());
+    limits_texture_ = gpu::BufferTexture(GL_R32UI, limits_);
     if (sea_.cascades.empty()) {
         heights_ = gpu::TextureLayers(GL_R32F, 1, 1, "no waves");
         slopes_ = gpu::TextureLayers(GL_RG16F, 1, 1, "no waves");
@@ -131,7 +132,7 @@ void WaveField::move_to(double time_s) {
         if (on_pass)
             on_pass(name);
     };
-    limits_.bind_image(TARN_IMAGE_WAVE_LIMITS, GL_READ_WRITE);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_WAVE_LIMITS, limits_.id());
     begins("rows");
     passes_.rows.use();
     glUniform1ui(0, waves::loop_fraction(time_s, sea_.settings.loop_s));
@@ -142,7 +143,7 @@ void WaveField::move_to(double time_s) {
     begins("columns");
     passes_.columns.use();
     glDispatchCompute(GLuint(n / lanes_for(n)), GLuint(count * passes_.fields), 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     begins("surface");
     passes_.surface.use();
     set_uniform(0,
@@ -157,10 +158,10 @@ void WaveField::move_to(double time_s) {
     heights_.bind(TARN_TEXTURE_WAVES);
     slopes_.bind(TARN_TEXTURE_SLOPES);
     set_uniform(2, per_m);
-    for (int source = 0; source + 1 < heights_.levels(); source += 3) {
-        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-        const int made = std::min(3, heights_.levels() - 1 - source);
-        for (int k = 0; k < 3; ++k) {
+    for (int source = 0; source + 1 < heights_.levels(); source += 4) {
+        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+        const int made = std::min(4, heights_.levels() - 1 - source);
+        for (int k = 0; k < 4; ++k) {
             const int level = source + 1 + std::min(k, made - 1);
             heights_.bind_image(GLuint(TARN_IMAGE_WAVE_HEIGHTS + k), GL_WRITE_ONLY, level);
             slopes_.bind_image(GLuint(TARN_IMAGE_WAVE_SLOPES + k), GL_WRITE_ONLY, level);
@@ -214,7 +215,7 @@ void WaveField::bind(glm::dvec2 base, double lift_m) {
     slopes_.bind(TARN_TEXTURE_SLOPES);
     amplitude_.bind(TARN_TEXTURE_AMPLITUDE);
     table_.bind(TARN_TEXTURE_WAVE_TABLE);
-    limits_.bind(TARN_TEXTURE_WAVE_LIMITS);
+    limits_texture_.bind(TARN_TEXTURE_WAVE_LIMITS);
 }
 
 double WaveField::height_at(glm::dvec2 place, double depth_m) const {
@@ -269,11 +270,11 @@ std::vector<glm::vec3> WaveField::read(int cascade) const {
 }
 
 double WaveField::least_eigenvalue(int cascade) const {
-    std::uint32_t bits[waves::most_cascades * (TARN_WAVE_LEVELS + 2)];
-    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-    limits_.download(GL_RED_INTEGER, GL_UNSIGNED_INT, bits, sizeof bits);
-    return 1.0 - double(std::bit_cast<float>(
-                     bits[cascade * (TARN_WAVE_LEVELS + 2) + TARN_WAVE_LEVELS + 1]));
+    std::uint32_t bits[waves::most_cascades * TARN_WAVE_LIMITS];
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glGetNamedBufferSubData(limits_.id(), 0, sizeof bits, bits);
+    return 1.0 -
+           double(std::bit_cast<float>(bits[cascade * TARN_WAVE_LIMITS + TARN_WAVE_LEVELS + 1]));
 }
 
 } // namespace tarn::render

@@ -58,9 +58,10 @@ private:
 
     waves::Sea sea_;
     Passes passes_;
-    gpu::Buffer h0_, turns_, fields_, twiddles_, block_;
+    gpu::Buffer h0_, turns_, fields_, twiddles_, block_, limits_;
+    gpu::BufferTexture limits_texture_;
     gpu::TextureLayers heights_, slopes_;
-    gpu::Texture2D amplitude_, table_, limits_;
+    gpu::Texture2D amplitude_, table_;
     std::vector<glm::vec4> table_texels_;
     shared::WaveBlock last_block_{};
     double time_s_ = 0.0;

@@ -19,16 +19,16 @@ float wave_footprint(float pixel_rad, float path_m, float sink) { return pixel_r
 
 // wave_bounds — greatest |height| and steepest slope of each cascade at full amplitude, and the mip level for a
 //               footprint.
-void wave_bounds(usampler2D limits, WaveBlock waves, float footprint_m, out vec4 high, out vec4 steep, out vec4 levels) {
+void wave_bounds(usamplerBuffer limits, WaveBlock waves, float footprint_m, out vec4 high, out vec4 steep, out vec4 levels) {
     high = vec4(0.0);
     steep = vec4(0.0);
     levels = vec4(0.0);
     for (int j = 0; j < TARN_CASCADES; ++j) {
         levels[j] = wave_level(waves, j, footprint_m);
         int level = int(min(levels[j], float(TARN_WAVE_LEVELS - 1)));
-        high[j] = uintBitsToFloat(texelFetch(limits, ivec2(level, j), 0).r);
+        high[j] = uintBitsToFloat(texelFetch(limits, j * TARN_WAVE_LIMITS + level).r);
         float filtered = 2.83 * high[j] / (waves.patches[j].w * float(1 << level)); // between texels of that level
-        steep[j] = min(uintBitsToFloat(texelFetch(limits, ivec2(TARN_WAVE_LEVELS, j), 0).r), filtered);
+        steep[j] = min(uintBitsToFloat(texelFetch(limits, j * TARN_WAVE_LIMITS + TARN_WAVE_LEVELS).r), filtered);
     }
 }
 
@@ -37,7 +37,7 @@ void wave_bounds(usampler2D limits, WaveBlock waves, float footprint_m, out vec4
 //   side     +1 from the air, -1 from the water
 //   to_m     factor: texel units to metres
 //   t_left   where the ray has left the slab, if it met nothing
-int meet_waves(sampler2D heights, sampler2DArray wave_heights, sampler2D amplitudes, sampler2D table, usampler2D limits,
+int meet_waves(sampler2D heights, sampler2DArray wave_heights, sampler2D amplitudes, sampler2D table, usamplerBuffer limits,
                Field field, WaveBlock waves, vec2 base, float pixel_rad, Ray ray, float side, float t_end, out Hit hit,
                out float t_left) {
     t_left = t_end;
