@@ -100,21 +100,54 @@ WaveSurface unpack_surface(uvec4 p) {
 // normal_of_slope — unit, scene axes.
 vec3 normal_of_slope(vec2 slope) { return normalize(vec3(-slope, 1.0)); }
 
-// A slope with the chance of the point that stands for its part of a normal distribution: Gauss and Hermite's
-// three points an axis, exact for polynomials of degree five.
-const float hermite_step = 1.73205080757;
-struct SlopePoint {
-    vec2 slope;
-    float chance;
+// facing — projected size of a facet with that slope, towards a viewer: what weights it in the mean.
+float facing(vec3 to_viewer, vec2 slope) { return max(dot(to_viewer, vec3(-slope, 1.0)), 0.0); }
+
+// Slopes inside a pixel as seen by one viewer, for sums over those that face him.
+struct VisibleSlopes {
+    vec2 towards, across; // unit, horizontal: to the viewer, and to the left of that
+    float middle, reach;  // slopes towards the viewer that the sum takes: middle +- reach
+    float mean, deviation;
+    float mean_across, lean, deviation_across; // across: mean, its shift with the slope along, what is left
 };
 
-// slope_point — number 0 to 8 of the points for slopes spread around a mean.
-SlopePoint slope_point(vec2 mean, vec3 covariance, int number) {
-    float a = sqrt(max(covariance.x, 1e-12)), b = covariance.y / a;
-    float c = sqrt(max(covariance.z - b * b, 0.0));
-    vec2 step = vec2(float(number % 3 - 1), float(number / 3 - 1)) * hermite_step;
-    vec2 chance = mix(vec2(2.0 / 3.0), vec2(1.0 / 6.0), abs(vec2(float(number % 3 - 1), float(number / 3 - 1))));
-    return SlopePoint(mean + vec2(a * step.x, b * step.x + c * step.y), chance.x * chance.y);
+const int slopes_along = 7, slopes_across = 2;
+
+// visible_slopes — along the view, where Fresnel's factor and the facets' projected size bend, the middles of seven
+//                  equal parts between where facets turn away, or three deviations, and three on the other side;
+//                  across it Gauss and Hermite's two points. (Gauss and Legendre's points along the view were no
+//                  better: the integrand has a kink where mirrored rays graze the water.)
+VisibleSlopes visible_slopes(vec3 to_viewer, vec2 mean, vec3 covariance) {
+    VisibleSlopes v;
+    float flat_part = max(length(to_viewer.xy), 1e-5);
+    v.towards = to_viewer.xy / flat_part;
+    if (flat_part <= 1e-5)
+        v.towards = vec2(1.0, 0.0);
+    v.across = vec2(-v.towards.y, v.towards.x);
+    vec2 c_towards = vec2(dot(covariance.xy, v.towards), dot(covariance.yz, v.towards));
+    float variance = max(dot(c_towards, v.towards), 1e-12), together = dot(c_towards, v.across);
+    float variance_across = dot(vec2(dot(covariance.xy, v.across), dot(covariance.yz, v.across)), v.across);
+    v.mean = -dot(mean, v.towards); // rises away from the viewer: faces him
+    v.deviation = sqrt(variance);
+    v.mean_across = dot(mean, v.across);
+    v.lean = -together / variance;
+    v.deviation_across = sqrt(max(variance_across - together * together / variance, 0.0));
+    float last = v.mean + 3.2 * v.deviation;
+    float first = min(max(v.mean - 3.2 * v.deviation, -to_viewer.z / flat_part), last - 1e-3 * v.deviation);
+    v.middle = 0.5 * (first + last);
+    v.reach = 0.5 * (last - first);
+    return v;
+}
+
+// visible_slope — one of the slopes_along x slopes_across, and its share, facing included: the shares add up to
+//                 the mean projected size of all facets that face the viewer.
+vec2 visible_slope(VisibleSlopes v, vec3 to_viewer, int i, int j, out float share) {
+    float along = v.middle + (float(2 * i + 1) / float(slopes_along) - 1.0) * v.reach, x = (along - v.mean) / v.deviation;
+    float across = v.mean_across + v.lean * (along - v.mean) + (2.0 * float(j) - 1.0) * v.deviation_across;
+    vec2 slope = across * v.across - along * v.towards;
+    share = exp(-0.5 * x * x) * v.reach / v.deviation * (0.797884561 / float(slopes_along * slopes_across)) *
+            facing(to_viewer, slope);
+    return slope;
 }
 
 // slope_lot — one slope drawn from the distribution, by two even numbers in [0, 1) (Box & Muller 1958).
@@ -124,9 +157,6 @@ vec2 slope_lot(vec2 mean, vec3 covariance, vec2 even) {
     vec2 lot = sqrt(-2.0 * log(max(1.0 - even.x, 1e-7))) * vec2(cos(turn), sin(turn));
     return mean + vec2(a * lot.x, b * lot.x + c * lot.y);
 }
-
-// facing — projected size of a facet with that slope, towards a viewer: what weights it in the mean.
-float facing(vec3 to_viewer, vec2 slope) { return max(dot(to_viewer, vec3(-slope, 1.0)), 0.0); }
 
 // slope_density — of a normal distribution, per unit of both slopes.
 float slope_density(vec2 off, vec3 covariance) {

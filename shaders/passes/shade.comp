@@ -127,17 +127,17 @@ Glitter glitter_of(Part first, End end, WaveSurface surface) {
     bool schlick = on(TARN_FLAG_SCHLICK);
     float eta = 1.0 / view.attenuation.w, seen = 0.0;
     Glitter g = Glitter(vec3(0.0), 0.0, vec3(0.0), 0.0);
-    for (int i = 0; i < 9; ++i) {
-        SlopePoint point = slope_point(surface.mean, surface.taken, i);
-        float size = facing(to_viewer, point.slope), weight = point.chance * size;
-        vec3 normal = normal_of_slope(point.slope);
+    VisibleSlopes visible = visible_slopes(to_viewer, surface.mean, surface.taken);
+    for (int k = 0; k < slopes_along * slopes_across; ++k) {
+        float share;
+        vec3 normal = normal_of_slope(visible_slope(visible, to_viewer, k / slopes_across, k % slopes_across, share));
         float cosine = clamp(dot(to_viewer, normal), 0.0, 1.0);
         float mirror = schlick ? fresnel_schlick(cosine, eta) : fresnel_dielectric(cosine, eta);
         vec3 reflected = first.direction + 2.0 * cosine * normal;
         reflected.z = abs(reflected.z);
-        seen += weight;
-        g.mirror += weight * mirror;
-        g.sky += weight * mirror * sky_radiance(sky_table, reflected, view.sun.xyz);
+        seen += share;
+        g.mirror += share * mirror;
+        g.sky += share * mirror * sky_radiance(sky_table, reflected, view.sun.xyz);
     }
     float least = max(seen, 1e-4);
     g.mirror = seen > 0.0 ? g.mirror / least : 1.0;

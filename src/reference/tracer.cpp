@@ -41,13 +41,14 @@ struct Meeting {
     glm::dvec2 slope{0.0, 0.0}; ///< of its surface there
 };
 
-/// Two independent normal numbers for a pixel's sample: slopes of waves too short to be drawn.
-glm::dvec2 normal_pair(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    std::seed_seq seed{a, b, c};
-    std::mt19937 random(seed);
-    std::normal_distribution<double> normal;
-    const double first = normal(random);
-    return {first, normal(random)};
+/// Where the random numbers of a pixel's sample begin: for slopes of waves too short to be drawn.
+using Lot = std::uint64_t;
+
+Lot lot_of(int x, int y, int sample) {
+    Lot v = Lot(std::uint32_t(x)) << 40 ^ Lot(std::uint32_t(y)) << 20 ^ Lot(std::uint32_t(sample));
+    v = (v ^ (v >> 31)) * 0x7fb5d329728ea185ull;
+    v = (v ^ (v >> 27)) * 0x81dadef4bc2dd44dull;
+    return v ^ (v >> 33);
 }
 
 class Tracer {
@@ -89,8 +90,8 @@ public:
     }
 
     /// Radiance towards the camera through one place of the picture, and the first distance.
-    /// @param lot  two normal numbers: which of the slopes too small to be drawn
-    glm::dvec3 look(glm::dvec2 place, double& distance, glm::dvec2 lot) const {
+    /// @param lot  which of the slopes too small to be drawn
+    glm::dvec3 look(glm::dvec2 place, double& distance, Lot lot) const {
         const glm::dvec3 direction =
             pixel_direction(camera_.forward, camera_.right, camera_.up, half_tangent_, place);
         if (camera_lake_)
@@ -99,13 +100,29 @@ public:
     }
 
 private:
-    Split split(glm::dvec3 direction, const Meeting& at, bool from_water, glm::dvec2 lot) const {
+    Split split(glm::dvec3 direction, const Meeting& at, bool from_water, Lot lot) const {
         glm::dvec2 slope = at.slope;
-        if (waves_) {
+        if (waves_ && sea_.roughness.trace() > 0.0) {
+            // Facets count by the size that they turn to the viewer: drawn, and taken with that
+            // chance.
             const waves::SlopeCovariance& r = sea_.roughness;
             const double a = std::sqrt(r.xx), b = a > 0.0 ? r.xy / a : 0.0;
-            slope +=
-                glm::dvec2(a * lot.x, b * lot.x + std::sqrt(std::max(r.yy - b * b, 0.0)) * lot.y);
+            const double c = std::sqrt(std::max(r.yy - b * b, 0.0));
+            const double side = from_water ? 1.0 : -1.0;
+            const auto facing = [&](glm::dvec2 s) {
+                return side * glm::dot(direction, glm::dvec3(-s, 1.0));
+            };
+            const double most = facing(at.slope) + 5.0 * std::sqrt(r.trace());
+            std::minstd_rand random(std::uint32_t(lot % 2147483646u) + 1u);
+            std::uniform_real_distribution<double> even;
+            for (int tries = 0; tries < 1000; ++tries) {
+                const double radius = std::sqrt(-2.0 * std::log(1.0 - even(random))),
+                             turn = 2.0 * pi * even(random);
+                const double u = radius * std::cos(turn), v = radius * std::sin(turn);
+                slope = at.slope + glm::dvec2(a * u, b * u + c * v);
+                if (even(random) * most < facing(slope))
+                    break;
+            }
         }
         return split_at_surface(direction, glm::normalize(glm::dvec3(-slope, 1.0)), index_,
                                 from_water, settings_.fresnel == scene::Fresnel::schlick);
@@ -332,7 +349,7 @@ private:
     /// Radiance arriving at `origin` from `direction`, both in the air.
     /// @param lot  none: no water surface is looked for
     glm::dvec3 in_air(glm::dvec3 origin, glm::dvec3 direction, double before_m, double* distance,
-                      std::optional<glm::dvec2> lot) const {
+                      std::optional<Lot> lot) const {
         const auto met = meet_in_air(origin, direction, lot.has_value());
         if (distance)
             *distance = met ? met->hit.t : infinity;
@@ -380,7 +397,7 @@ private:
 
     /// The same under water.
     glm::dvec3 in_water(glm::dvec3 origin, glm::dvec3 direction, const Lake& lake, double before_m,
-                        double* distance, std::optional<glm::dvec2> lot) const {
+                        double* distance, std::optional<Lot> lot) const {
         const double depth = std::max(lake.level_m - origin.z, 0.0);
         double to_surface = direction.z > 1e-6 ? depth / direction.z : infinity;
         std::optional<Hit> hit;
@@ -467,11 +484,8 @@ Image trace(const scene::Scene& scene, const scene::View& view, const Progress& 
                 for (int s = 0; s < settings.samples; ++s) {
                     const glm::dvec2 offset = scene::sample_offset(s, settings.samples);
                     double distance = 0.0;
-                    const glm::dvec2 lot =
-                        view.waves.calm()
-                            ? glm::dvec2(0.0)
-                            : normal_pair(std::uint32_t(x), std::uint32_t(y), std::uint32_t(s));
-                    sum += tracer.look({(x + offset.x) / w, (y + offset.y) / h}, distance, lot);
+                    sum += tracer.look({(x + offset.x) / w, (y + offset.y) / h}, distance,
+                                       lot_of(x, y, s));
                     if (s == 0)
                         out.distance_m[i] = static_cast<float>(distance);
                 }
