@@ -196,7 +196,8 @@ void main() {
                     radiance += remaining * (glitter.sky + glitter.sun);
                     if ((end.flags & end_ground) == 0u)
                         continue;
-                    part.weight *= glitter.lot;
+                    // One steep facet must not take more than all facets bring.
+                    part.weight = min(part.weight * glitter.lot, glitter.mirror);
                     radiance -= remaining * part.weight * sky_radiance(sky_table, part.direction, view.sun.xyz);
                 }
             }
