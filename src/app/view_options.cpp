@@ -164,6 +164,9 @@ void add_wave_options(CLI::App& c, ViewWords& w) {
                  "shorter ones are damped [m]; default: by Cox and Munk's slopes");
     c.add_option("--wave-patch", w.wave_patch,
                  "side of the largest patch [m]; default: by the longest waves");
+    c.add_option(
+        "--rain", w.rain,
+        "drops a second on a square metre: ripples (some 10 in drizzle, 200 in heavy rain)");
     c.add_option("--wave-cascades", w.wave_cascades,
                  text("patches of different size, 1 to 4; default ", usual.cascades));
     c.add_option("--wave-texels", w.wave_texels,
@@ -266,6 +269,7 @@ waves::Settings make_waves(const ViewWords& w, const scene::Scene& scene) {
     s.wind_m_per_s = w.wind.value_or(s.wind_m_per_s);
     if (w.wind_from)
         s.wind_from_deg = *w.wind_from - convergence_deg(scene);
+    s.ripples.rain_drops_per_m2_s = w.rain.value_or(s.ripples.rain_drops_per_m2_s);
     s.time_s = w.wave_time.value_or(s.time_s);
     s.loop_s = w.wave_loop.value_or(s.loop_s);
     s.choppiness = w.choppiness.value_or(s.choppiness);

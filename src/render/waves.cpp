@@ -1,6 +1,7 @@
 #include "render/waves.hpp"
 
 #include "core/text.hpp"
+#include "waves/ripples.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -40,6 +41,13 @@ std::string WaveField::defines() const {
                : text("#define TARN_WAVES 1\n#define TARN_CASCADES ", sea_.cascades.size(), "\n");
 }
 
+int WaveField::spectral() const {
+    int count = 0;
+    for (const waves::Cascade& c : sea_.cascades)
+        count += !c.ripples;
+    return count;
+}
+
 void WaveField::build_passes() {
     const int texels = sea_.cascades.front().texels;
     bool choppy = false;
@@ -67,6 +75,25 @@ void WaveField::build_passes() {
     twiddles_ = gpu::Buffer(twiddles.size() * sizeof twiddles[0], twiddles.data());
 }
 
+void WaveField::upload_spectra() {
+    const std::size_t count = std::size_t(spectral());
+    if (count == 0)
+        return;
+    const std::size_t n = std::size_t(passes_.texels), texels = n * n;
+    h0_ = gpu::Buffer(texels * count * sizeof(glm::vec4), nullptr);
+    turns_ = gpu::Buffer(texels * count * sizeof(std::uint32_t), nullptr);
+    fields_ =
+        gpu::Buffer(texels * count * std::size_t(passes_.fields) * sizeof(glm::vec4), nullptr);
+    for (std::size_t j = 0; j < count; ++j) {
+        const waves::Cascade& c = sea_.cascades[j];
+        glNamedBufferSubData(h0_.id(), GLintptr(texels * j * sizeof(glm::vec4)),
+                             GLsizeiptr(texels * sizeof(glm::vec4)), c.h0.data());
+        glNamedBufferSubData(turns_.id(), GLintptr(texels * j * sizeof(std::uint32_t)),
+                             GLsizeiptr(texels * sizeof(std::uint32_t)), c.turns.data());
+    }
+    bytes_ += texels * count * (20 + std::size_t(passes_.fields) * 16);
+}
+
 void WaveField::set(waves::Sea sea) {
     sea_ = std::move(sea);
     if (sea_.still())
@@ -80,23 +107,23 @@ void WaveField::set(waves::Sea sea) {
         slopes_ = gpu::TextureLayers(GL_RG16F, 1, 1, "no waves");
     } else {
         build_passes();
-        const int n = sea_.cascades.front().texels, count = int(sea_.cascades.size());
-        const std::size_t texels = std::size_t(n) * std::size_t(n);
-        h0_ = gpu::Buffer(texels * std::size_t(count) * sizeof(glm::vec4), nullptr);
-        turns_ = gpu::Buffer(texels * std::size_t(count) * sizeof(std::uint32_t), nullptr);
-        fields_ =
-            gpu::Buffer(texels * std::size_t(count * passes_.fields) * sizeof(glm::vec4), nullptr);
-        heights_ = gpu::TextureLayers(GL_R32F, n, count, "waves");
-        slopes_ = gpu::TextureLayers(GL_RG16F, n, count, "slopes of waves");
-        for (int j = 0; j < count; ++j) {
-            waves::Cascade& c = sea_.cascades[std::size_t(j)];
-            glNamedBufferSubData(h0_.id(), GLintptr(texels * std::size_t(j) * sizeof(glm::vec4)),
-                                 GLsizeiptr(texels * sizeof(glm::vec4)), c.h0.data());
-            glNamedBufferSubData(turns_.id(),
-                                 GLintptr(texels * std::size_t(j) * sizeof(std::uint32_t)),
-                                 GLsizeiptr(texels * sizeof(std::uint32_t)), c.turns.data());
-        }
-        bytes_ = texels * std::size_t(count) * (20 + std::size_t(passes_.fields) * 16 + 8 * 4 / 3);
+        const int n = sea_.cascades.front().texels, layers = int(sea_.cascades.size());
+        heights_ = gpu::TextureLayers(GL_R32F, n, layers, "waves");
+        slopes_ = gpu::TextureLayers(GL_RG16F, n, layers, "slopes of waves");
+        bytes_ = std::size_t(n) * std::size_t(n) * std::size_t(layers) * 8 * 4 / 3;
+        upload_spectra();
+        ripples_.reset();
+        if (spectral() < layers)
+            ripples_.emplace(RipplePond{.texels = n,
+                                        .texel_m = waves::ripple_texel_m,
+                                        .speed_m_per_s = waves::ripple_speed_m_per_s,
+                                        .damping_per_s = waves::ripple_damping_per_s,
+                                        .edge = RipplePond::Edge::wraps,
+                                        .drops_per_m2_s = sea_.settings.ripples.rain_drops_per_m2_s,
+                                        .drop_height_m = sea_.settings.ripples.drop_height_m,
+                                        .drop_radius_m = waves::drop_radius_m,
+                                        .seed = sea_.settings.seed,
+                                        .mask = {}});
     }
     const GridSize map = sea_.amplitude.size;
     amplitude_ =
@@ -117,25 +144,15 @@ void WaveField::set(waves::Sea sea) {
     gpu::check_gl("uploading the waves");
 }
 
-void WaveField::move_to(double time_s) {
-    time_s_ = time_s;
-    if (sea_.cascades.empty())
-        return;
-    const int n = passes_.texels, count = int(sea_.cascades.size());
-    const glm::vec4 per_m =
-        per_cascade(sea_.cascades, [](const waves::Cascade& c) { return 1.0 / c.texel_m(); });
+void WaveField::transform_spectra(const std::function<void(const char*)>& begins) {
+    const int n = passes_.texels, count = spectral();
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_WAVE_H0, h0_.id());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_WAVE_TURNS, turns_.id());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_WAVE_FIELDS, fields_.id());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_TWIDDLES, twiddles_.id());
-    const auto begins = [this](const char* name) {
-        if (on_pass)
-            on_pass(name);
-    };
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_WAVE_LIMITS, limits_.id());
     begins("rows");
     passes_.rows.use();
-    glUniform1ui(0, waves::loop_fraction(time_s, sea_.settings.loop_s));
+    glUniform1ui(0, waves::loop_fraction(time_s_, sea_.settings.loop_s));
     set_uniform(1, per_cascade(sea_.cascades,
                                [](const waves::Cascade& c) { return 2.0 * pi / c.patch_m; }));
     glDispatchCompute(GLuint(n), GLuint(count), 1);
@@ -149,15 +166,39 @@ void WaveField::move_to(double time_s) {
     set_uniform(0,
                 per_cascade(sea_.cascades, [](const waves::Cascade& c) { return c.choppiness; }));
     set_uniform(1, per_cascade(sea_.cascades, [](const waves::Cascade& c) { return c.bound_m; }));
-    set_uniform(2, per_m);
+    set_uniform(
+        2, per_cascade(sea_.cascades, [](const waves::Cascade& c) { return 1.0 / c.texel_m(); }));
     heights_.bind_image(TARN_IMAGE_WAVE_HEIGHTS, GL_WRITE_ONLY, 0);
     slopes_.bind_image(TARN_IMAGE_WAVE_SLOPES, GL_WRITE_ONLY, 0);
     glDispatchCompute(groups(n, 16), groups(n, 8), GLuint(count));
+}
+
+void WaveField::move_to(double time_s) {
+    time_s_ = time_s;
+    if (sea_.cascades.empty())
+        return;
+    const std::function<void(const char*)> begins = [this](const char* name) {
+        if (on_pass)
+            on_pass(name);
+    };
+    const int n = passes_.texels, count = spectral();
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_WAVE_LIMITS, limits_.id());
+    if (count > 0)
+        transform_spectra(begins);
+    if (ripples_) {
+        begins("ripples");
+        const GLintptr own = GLintptr(count) * TARN_WAVE_LIMITS * GLintptr(sizeof(GLuint));
+        glClearNamedBufferSubData(limits_.id(), GL_R32UI, own, TARN_WAVE_LIMITS * sizeof(GLuint),
+                                  GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+        ripples_->move_to(time_s);
+        ripples_->write_layer(heights_, slopes_, count, sea_.cascades.back().bound_m);
+    }
     begins("levels");
     passes_.levels.use();
     heights_.bind(TARN_TEXTURE_WAVES);
     slopes_.bind(TARN_TEXTURE_SLOPES);
-    set_uniform(2, per_m);
+    set_uniform(
+        2, per_cascade(sea_.cascades, [](const waves::Cascade& c) { return 1.0 / c.texel_m(); }));
     for (int source = 0; source + 1 < heights_.levels(); source += 4) {
         glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
         const int made = std::min(4, heights_.levels() - 1 - source);
@@ -169,7 +210,7 @@ void WaveField::move_to(double time_s) {
         glUniform1i(0, source);
         glUniform1i(1, made);
         const GLuint across = groups(std::max(n >> source, 1), 16);
-        glDispatchCompute(across, across, GLuint(count));
+        glDispatchCompute(across, across, GLuint(sea_.cascades.size()));
     }
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     begins("end");

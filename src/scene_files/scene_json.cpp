@@ -202,7 +202,9 @@ json wave_settings_json(const waves::Settings& s) {
                 {"fetch_m", or_null(s.fetch_m)},
                 {"depth_m", or_null(s.depth_m)},
                 {"shortest_m", or_null(s.shortest_m)},
-                {"patch_m", or_null(s.patch_m)}};
+                {"patch_m", or_null(s.patch_m)},
+                {"rain_drops_per_m2_s", s.ripples.rain_drops_per_m2_s},
+                {"drop_height_m", s.ripples.drop_height_m}};
     json list = json::array();
     for (const waves::PlaneWave& w : s.list)
         list.push_back({{"amplitude_m", w.amplitude_m},
@@ -229,6 +231,8 @@ waves::Settings read_waves(const Field& f) {
     s.depth_m = f["depth_m"].number_or_null(0, 1e4);
     s.shortest_m = f["shortest_m"].number_or_null(0.017, 1e3);
     s.patch_m = f["patch_m"].number_or_null(0.5, 1e5);
+    s.ripples.rain_drops_per_m2_s = f["rain_drops_per_m2_s"].number(0, 1e4);
+    s.ripples.drop_height_m = f["drop_height_m"].number(0, 0.1);
     const Field list = f["list"];
     for (std::size_t i = 0, n = list.array_size(0, 64); i < n; ++i) {
         const Field w = list.at(i);

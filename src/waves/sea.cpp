@@ -2,6 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
+#include "waves/ripples.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -379,6 +380,40 @@ void map_amplitudes(Sea& sea, const WaterMask& mask, const Grid<float>& fetch, d
     }
 }
 
+/// Rain on all water, deep or not, as one more patch.
+void add_rain(Sea& sea) {
+    const RippleSettings& rain = sea.settings.ripples;
+    if (!(rain.rain_drops_per_m2_s > 0.0))
+        return;
+    Cascade c;
+    c.ripples = true;
+    c.texels = sea.settings.texels;
+    c.patch_m = c.texels * ripple_texel_m;
+    c.low_k = 2.0 * pi / (8.0 * drop_radius_m);
+    c.high_k = 2.0 * pi / (1.5 * drop_radius_m);
+    c.bound_m = 6.0 * rain.drop_height_m;
+    c.moments.slope_along = c.moments.slope_across = 0.5 * rain_slope(rain);
+    const double k = 2.0 / drop_radius_m; // rms wavenumber of a drop
+    c.moments.height = c.moments.slope() / (k * k);
+    for (int level = 0; level < filter_levels; ++level)
+        for (int j = 0; j < 16; ++j) { // all directions alike
+            const double theta = (j + 0.5) * pi / 8.0;
+            const glm::dvec2 v = k * glm::dvec2(std::cos(theta), std::sin(theta));
+            const double lost = c.moments.slope() / 16.0 * (1.0 - passed(v, c.texel_m(), level));
+            SlopeCovariance& s = c.unresolved[std::size_t(level)];
+            s.xx += lost * v.x * v.x / (k * k);
+            s.xy += lost * v.x * v.y / (k * k);
+            s.yy += lost * v.y * v.y / (k * k);
+        }
+    for (auto& shares : sea.amplitude.values)
+        shares[sea.cascades.size()] = 255;
+    sea.bound_m += c.bound_m;
+    sea.full_depth_m = std::max(sea.full_depth_m, sea.bound_m / 0.95);
+    sea.report.mean_square_slope += c.moments.slope();
+    sea.report.drawn_slope += c.moments.slope();
+    sea.cascades.push_back(std::move(c));
+}
+
 double greatest(const Grid<float>& fetch) {
     float most = 0.0f;
     for (const float f : fetch.values)
@@ -441,12 +476,14 @@ Sea make_sea(const Heightfield& ground, const Heightfield& water,
     Sea sea;
     sea.settings = settings;
     sea.report.model = name_of(settings.model);
-    if (settings.model == Model::calm)
-        return sea;
-    const double depth_m = depth_of(lakes, settings);
-    const WaterMask mask = water_mask(ground, water);
     sea.amplitude = Grid<std::array<std::uint8_t, most_cascades>>({1, 1}, {255, 255, 255, 255});
     sea.amplitude_side_m = 1e9;
+    if (settings.model == Model::calm) {
+        add_rain(sea);
+        return sea;
+    }
+    const double depth_m = depth_of(lakes, settings);
+    const WaterMask mask = water_mask(ground, water);
     const auto note = [&](const std::string& words) { sea.report.notes.push_back(words); };
     double steepest_rms = 0.0;
     if (settings.model == Model::sines) {
@@ -478,6 +515,7 @@ Sea make_sea(const Heightfield& ground, const Heightfield& water,
                 note(depth_m > 0.0 ? text("a wind of ", settings.wind_m_per_s,
                                           " m/s raises no wave longer than 3 cm here: drawn calm")
                                    : "the depth is 0: drawn calm");
+                add_rain(sea);
                 return sea;
             }
         }
@@ -561,6 +599,7 @@ Sea make_sea(const Heightfield& ground, const Heightfield& water,
     sea.report.longest_m = longest;
     sea.report.shortest_m = shortest;
     sea.report.choppiness = sea.sines.empty() ? choppiness : 0.0;
+    add_rain(sea);
     return sea;
 }
 

@@ -38,6 +38,7 @@ struct Cascade {
     int texels = 512;     ///< a side
     double low_k = 0.0, high_k = 0.0;
     double choppiness = 0.0;
+    bool ripples = false;             ///< made by rain (waves/ripples.hpp), not by a spectrum
     Moments moments;                  ///< of the band, by the spectrum
     double bound_m = 0.0;             ///< heights are held within +- this: six standard deviations
     std::vector<glm::vec4> h0;        ///< texels^2: h0(k) and conj(h0(-k)); row = y, FFT order

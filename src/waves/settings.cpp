@@ -71,6 +71,8 @@ void Settings::validate() const {
     if (patch_m)
         require_range("patch [m]", *patch_m, 0.5, 1e5);
     require_range("rain [drops/(m2 s)]", ripples.rain_drops_per_m2_s, 0.0, 1e4);
+    if (ripples.rain_drops_per_m2_s > 0.0 && cascades > 3)
+        throw Error("waves: rain takes the place of a cascade, at most 3 beside it are drawn");
     require_range("height of drops [m]", ripples.drop_height_m, 0.0, 0.1);
 }
 
