@@ -73,6 +73,12 @@ public:
             waves::Settings settings = view.waves;
             settings.time_s = 0.0;
             sea_ = waves::make_sea(scene.ground, scene.water, scene.lakes, settings);
+            // Rain is no sum of waves: here it is roughness.
+            for (const waves::Cascade& c : sea_.cascades)
+                if (c.ripples) {
+                    sea_.roughness.xx += c.moments.slope_along;
+                    sea_.roughness.yy += c.moments.slope_across;
+                }
             if (!sea_.still()) {
                 waves_.emplace(sea_, view.waves.time_s);
                 raised_ = scene.water;

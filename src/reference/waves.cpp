@@ -78,6 +78,10 @@ WaveFields wave_fields(const waves::Cascade& c, double time_s, double loop_s, in
 WaveSurface::WaveSurface(const waves::Sea& sea, double time_s)
     : sea_(sea), time_s_(time_s), bound_m_(sea.bound_m), step_m_(1e9) {
     for (const waves::Cascade& c : sea.cascades) {
+        if (c.ripples) { // counted as roughness by the tracer
+            fields_.emplace_back();
+            continue;
+        }
         fields_.push_back(wave_fields(c, time_s, sea.settings.loop_s, 2));
         step_m_ = std::min(step_m_, 0.05 * c.texel_m());
         double most = 0.0; // of the displaced surface; a fifth more for what lies between nodes
@@ -145,7 +149,7 @@ WaveSurface::Sample WaveSurface::sum(glm::dvec2 place, double depth_m) const {
     Sample out{0.0, glm::dvec2(0.0)};
     for (std::size_t j = 0; j < sea_.cascades.size(); ++j) {
         const double a = fade * share(place, j);
-        if (!(a > 0.0))
+        if (!(a > 0.0) || sea_.cascades[j].ripples)
             continue;
         const Sample s = at(j, place);
         out.height += a * s.height;

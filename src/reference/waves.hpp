@@ -3,8 +3,8 @@
 ///
 /// Nothing is filtered here: many samples a pixel take the place of the GPU's covariances. Fields
 /// come from FFTW on a lattice twice as fine, looked up by cubic splines through the texels
-/// (Catmull & Rom); the point under a place is found by Newton's method. Waves, amplitudes and
-/// fades are those of waves/sea.hpp.
+/// (Catmull & Rom); rain's ripples are left out; the point under a place is found by Newton's
+/// method. Waves, amplitudes and fades are those of waves/sea.hpp.
 #include "waves/sea.hpp"
 
 #include <functional>
