@@ -18,6 +18,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <spdlog/spdlog.h>
 
 namespace tarn::app {
 
@@ -134,6 +135,9 @@ int run_render(Words& words) {
         render::Renderer renderer(scene);
         setup_s = seconds();
         picture = renderer.draw(view, [&](double share) { progress.report(share, "rendering"); });
+        end_progress();
+        for (const std::string& note : renderer.wave_notes())
+            spdlog::info("waves: {}", note);
     }
     const double total_s = seconds();
     end_progress();

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <spdlog/spdlog.h>
 
 namespace tarn::app {
 
@@ -50,8 +51,10 @@ void print_lake(const scene_files::LakeWaves& lake) {
     }
     std::cout << "Hs " << fixed(r.significant_height_m, 3) << " m, Tp " << fixed(r.peak_period_s, 2)
               << " s, length at the peak " << metres(r.peak_length_m) << ", mean square slope "
-              << fixed(r.mean_square_slope, 4) << "\n  fetch " << metres(r.fetch_m) << ", depth "
-              << metres(r.depth_m) << "\n";
+              << fixed(r.mean_square_slope, 4) << "\n  fetch " << metres(r.fetch_m) << ", "
+              << (r.depth_m < 9999.0 ? "depth " + metres(r.depth_m)
+                                     : std::string("depth unknown, taken as deep"))
+              << "\n";
 }
 
 int run_waves(Words& words) {
@@ -129,7 +132,7 @@ int run_waves(Words& words) {
         std::cout << "  mean Hs " << fixed(mean, 3) << " m, greatest " << fixed(most, 3) << " m\n";
     }
     for (const std::string& note : r.notes)
-        std::cerr << "tarn: note: " << note << "\n";
+        spdlog::info("waves: {}", note);
     return 0;
 }
 

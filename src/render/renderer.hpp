@@ -68,6 +68,10 @@ public:
     /// Binds heights, the bounds of a walk and the view block, for a program of one's own (tests).
     void bind_field(scene::Walk walk, bool with_water);
 
+    /// What had to be changed about the waves asked for in the last prepare(), and why.
+    std::vector<std::string> wave_notes() const {
+        return waves_ ? waves_->sea().report.notes : std::vector<std::string>();
+    }
     /// The sea of the last prepare(), where it was not calm.
     const WaveField* waves() const { return wavy() ? &*waves_ : nullptr; }
     WaveField* waves() { return wavy() ? &*waves_ : nullptr; }

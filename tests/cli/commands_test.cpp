@@ -557,6 +557,73 @@ TEST(Stats, TableAndPlotOfTheBowlAndNothingElseIsRun) {
     EXPECT_EQ(run("tarn stats " + shared().scene + " --levels 5 --plot x.gif").code, 1);
 }
 
+TEST(Waves, NumbersForPeopleAndPrograms) {
+    const std::string scene = shared().scene;
+    const Outcome o = run("tarn waves " + scene + " --wind 8 --wind-from 240");
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_NE(o.out.find("lake 1, Bowl: Hs 0."), std::string::npos) << o.out;
+    EXPECT_NE(o.out.find("337.5 deg"), std::string::npos);
+    const TempFolder t;
+    std::ofstream(t / "rose.csv") << "from,speed,share\n0,3,20\n240,8,70\n90,5,10\n";
+    const Outcome j =
+        run("tarn waves " + scene + " --wind-rose " + (t / "rose.csv").string() + " --json");
+    ASSERT_EQ(j.code, 0) << j.err;
+    const auto report = nlohmann::json::parse(j.out);
+    EXPECT_EQ(report["wind_m_per_s"], 8.0); // the most frequent
+    EXPECT_EQ(report["wind_rose"].size(), 3u);
+    EXPECT_EQ(report["fetches"].size(), 16u);
+    // The bowl's water is a disc of 500 m: .0016 sqrt(g F) U / g for a fetch of some 400 m.
+    const double fetch = report["lakes"][0]["fetch_m"],
+                 hs = report["lakes"][0]["significant_height_m"];
+    EXPECT_GT(fetch, 300.0);
+    EXPECT_LT(fetch, 500.0);
+    EXPECT_NEAR(hs, 0.0016 * std::sqrt(9.81 * fetch) * 8.0 / 9.81, 0.03 * hs);
+    EXPECT_NEAR(double(report["drawn"]["mean_square_slope"]), 0.003 + 0.00512 * 8, 0.001);
+    expect_one_line("tarn waves " + scene + " --wind -3", 1, "wind [m/s] is -3");
+    expect_one_line("tarn waves " + scene + " --waves sines", 1, "needs a list");
+    expect_one_line("tarn waves " + scene + " --wave-list 1,2", 1,
+                    "--wave-list: '1,2' is not understood");
+    expect_one_line("tarn waves " + scene + " --wave-texels 100", 1, "must be 128");
+    expect_one_line("tarn waves " + scene + " --wind-rose " + scene, 1, "cannot be read");
+    expect_one_line("tarn waves " + scene + " --wind 3 --wind-rose " + (t / "rose.csv").string(), 1,
+                    "excludes");
+    EXPECT_EQ(run("tarn waves " + scene + " --waves tsunami").code, 2);
+}
+
+TEST(Waves, AreKeptInTheSceneAndDrawnFromIt) {
+    const TempFolder t;
+    const std::string scene = (t / "windy").string();
+    ASSERT_EQ(run("tarn import " + shared().dem +
+                  " --level 10 --wind 5 --wind-from 90 --rain 20 -o " + scene)
+                  .code,
+              0);
+    const scene::Scene kept = scene_files::load(scene);
+    EXPECT_EQ(kept.waves.model, waves::Model::jonswap);
+    EXPECT_EQ(kept.waves.wind_m_per_s, 5.0);
+    EXPECT_NEAR(kept.waves.wind_from_deg, 90.0, 0.5); // grid north
+    EXPECT_EQ(kept.waves.ripples.rain_drops_per_m2_s, 20.0);
+    const std::string picture = " --size 64x48 --samples 1 --camera shore --wave-texels 128 -o ";
+    ASSERT_EQ(run("tarn render " + scene + picture + (t / "a.exr").string()).code, 0);
+    ASSERT_EQ(
+        run("tarn render " + scene + " --waves calm --rain 0" + picture + (t / "b.exr").string())
+            .code,
+        0);
+    ASSERT_EQ(
+        run("tarn render " + scene + " --wave-time 3" + picture + (t / "c.exr").string()).code, 0);
+    ASSERT_EQ(
+        run("tarn render " + scene + " --wave-time 603" + picture + (t / "d.exr").string()).code,
+        0);
+    const auto a = image::read_exr(t / "a.exr").radiance, b = image::read_exr(t / "b.exr").radiance;
+    EXPECT_NE(a, b);
+    EXPECT_NE(image::read_exr(t / "c.exr").radiance, a);
+    EXPECT_EQ(image::read_metadata(t / "a.exr").at("tarn:waves").substr(0, 17),
+              "jonswap; wind 5 m");
+    const Outcome o =
+        run("tarn render " + scene + " --wind 0.1" + picture + (t / "e.png").string());
+    EXPECT_EQ(o.code, 0);
+    EXPECT_NE(o.err.find("drawn calm"), std::string::npos) << o.err;
+}
+
 TEST(Detect, ListsLakesForPeopleAndPrograms) {
     const TempFolder folder;
     Grid<float> z({200, 200});

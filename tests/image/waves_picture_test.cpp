@@ -168,3 +168,106 @@ TEST(WavePictures, AgreeWithTheReferenceInTheMeanOverBlocks) {
         EXPECT_LT(sum / blocks, c.allowed) << c.name;
     }
 }
+
+// What could go wrong gives a picture all the same: of waves, or of calm water where there can be
+// none.
+TEST(WavePictures, ExtremesGiveSanePictures) {
+    test_support::context();
+    const scene::Scene scene = scene::bowl(129);
+    render::Renderer renderer(scene);
+    scene::View view;
+    view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.4, -0.7, 0.7)));
+    view.settings = {.width_px = 64, .height_px = 40, .samples = 1};
+    const auto mean = [&](const waves::Settings& s, const scene::Camera& camera) {
+        view.waves = s;
+        view.camera = camera;
+        double sum = 0.0;
+        for (const glm::vec3& c : renderer.draw(view).radiance) {
+            EXPECT_TRUE(std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b));
+            EXPECT_GE(c.g, -1e-6f);
+            sum += c.g;
+        }
+        return sum / (64.0 * 40.0);
+    };
+    const auto with = [](auto change) {
+        waves::Settings s = wind(6.0, 128);
+        s.fetch_m.reset();
+        change(s);
+        return s;
+    };
+    const scene::Camera above = scene::look({0, -200, 22}, 0, -12, 50),
+                        below = scene::look({0, -60, 4}, 0, 35, 70),
+                        in_slab = scene::look({0, -60, 10.0}, 0, 0, 70),
+                        shore = scene::look({0, -249, 10.6}, 0, -8, 60);
+    using waves::Settings;
+    const std::pair<const char*, Settings> extremes[] = {
+        {"no wind", with([](Settings& s) { s.wind_m_per_s = 0.0; })},
+        {"a breath", with([](Settings& s) { s.wind_m_per_s = 0.1; })},
+        {"60 m/s", with([](Settings& s) { s.wind_m_per_s = 60.0; })},
+        {"60 m/s, long-blown", with([](Settings& s) {
+             s.wind_m_per_s = 60.0;
+             s.model = waves::Model::phillips;
+         })},
+        {"no depth", with([](Settings& s) { s.depth_m = 0.0; })},
+        {"a hand deep", with([](Settings& s) {
+             s.depth_m = 0.1;
+             s.model = waves::Model::tma;
+         })},
+        {"a patch of .5 m", with([](Settings& s) { s.patch_m = 0.5; })},
+        {"a patch of 100 km", with([](Settings& s) { s.patch_m = 1e5; })},
+        {"2048 texels", with([](Settings& s) {
+             s.texels = 2048;
+             s.cascades = 1;
+         })},
+        {"three centuries on", with([](Settings& s) { s.time_s = 1e10; })},
+        {"a loop of .01 s", with([](Settings& s) { s.loop_s = 0.01; })},
+        {"rain on calm water", with([](Settings& s) {
+             s.model = waves::Model::calm;
+             s.ripples.rain_drops_per_m2_s = 1e4;
+         })},
+        {"waves higher than the water is deep", with([](Settings& s) {
+             s.model = waves::Model::sines;
+             s.list = {{30.0, 80.0, 0.0, 0.0}};
+         })},
+        {"walls of water", with([](Settings& s) {
+             s.model = waves::Model::sines;
+             s.list = {{2.0, 1.0, 0.0, 0.0}};
+         })},
+        {"a folding trochoid", with([](Settings& s) {
+             s.model = waves::Model::gerstner;
+             s.choppiness = 2.0;
+             s.list = {{2.0, 6.0, 10.0, 0.0}};
+         })}};
+    const Settings calm;
+    const double usual[] = {mean(calm, above), mean(calm, below), mean(calm, in_slab),
+                            mean(calm, shore)};
+    for (const auto& [name, settings] : extremes) {
+        int k = 0;
+        for (const scene::Camera& camera : {above, below, in_slab, shore}) {
+            const double m = mean(settings, camera);
+            EXPECT_GT(m, 0.1 * usual[k]) << name << " " << k;
+            EXPECT_LT(m, 10.0 * usual[k]) << name << " " << k;
+            ++k;
+        }
+    }
+}
+
+// Programs of calm scenes hold no wave code and no wave is made: the same picture, to the bit,
+// before and after a sea was drawn.
+TEST(WavePictures, CalmIsUntouchedByTheWavesOfAnotherPicture) {
+    test_support::context();
+    const scene::Scene scene = scene::bowl(129);
+    render::Renderer renderer(scene);
+    scene::View view;
+    view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.4, -0.7, 0.7)));
+    view.settings = {.width_px = 64, .height_px = 40, .samples = 2};
+    view.camera = scene::look({0, -200, 22}, 0, -12, 50);
+    const Image before = renderer.draw(view);
+    view.waves = wind(8.0, 128);
+    const Image wavy = renderer.draw(view);
+    EXPECT_NE(wavy.radiance, before.radiance);
+    EXPECT_NE(renderer.waves(), nullptr);
+    view.waves = {};
+    EXPECT_EQ(renderer.draw(view).radiance, before.radiance);
+    EXPECT_EQ(renderer.waves(), nullptr);
+}
