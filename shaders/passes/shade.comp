@@ -19,6 +19,7 @@ layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform readonly uimage2D hits[3];
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
 #ifdef TARN_WAVES
 #include "lib/waves.glsl"
+layout(binding = TARN_TEXTURE_SKY_SOFT) uniform sampler2D soft_sky;
 layout(binding = TARN_IMAGE_SURFACE, rgba32ui) uniform readonly uimage2D surfaces;
 #endif
 
@@ -137,7 +138,7 @@ Glitter glitter_of(Part first, End end, WaveSurface surface) {
         reflected.z = abs(reflected.z);
         seen += share;
         g.mirror += share * mirror;
-        g.sky += share * mirror * sky_radiance(sky_table, reflected, view.sun.xyz);
+        g.sky += share * mirror * sky_radiance(soft_sky, reflected, view.sun.xyz);
     }
     float least = max(seen, 1e-4);
     g.mirror = seen > 0.0 ? g.mirror / least : 1.0;

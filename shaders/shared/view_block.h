@@ -24,6 +24,7 @@ using ivec4 = glm::ivec4;
 #define TARN_TEXTURE_SKY 2     // RGBA32F: sky radiance
 #define TARN_TEXTURE_ORTHO 3   // SRGB8_ALPHA8: orthophoto
 #define TARN_TEXTURE_OVERLAY 5 // RGBA32F: rasterised things: radiance, and distance [m] in alpha, 0 = none
+#define TARN_TEXTURE_SKY_SOFT 11 // RGBA16F (RGB32F on software GL): the same, quicker to look up, for sums
 #define TARN_TEXTURE_BEAMS 4   // R32F: free path of each tile of 8 x 8 pixels [m]
 #define TARN_IMAGE_RADIANCE 0  // rgba32f
 #define TARN_IMAGE_DISTANCE 1  // r32f

@@ -80,6 +80,7 @@ int run_import(Words& words) {
     const auto sun = sun_direction(scene, geo::default_time(lake.position));
     for (const std::string& name : scene::preset_names())
         scene.cameras.push_back({name, scene::preset_camera(scene, lake, name, sun, 16.0 / 9.0)});
+    scene.waves.wind_from_deg -= convergence_deg(scene); // the default counts from true north, too
     scene.waves = make_waves(words.waves, scene);
     scene.validate();
 

@@ -113,7 +113,7 @@ private:
 
     const scene::Scene& scene_;
     shared::ViewBlock block_{};
-    gpu::Texture2D heights_, sky_, ortho_, radiance_, distance_, beams_, overlay_;
+    gpu::Texture2D heights_, sky_, soft_sky_, ortho_, radiance_, distance_, beams_, overlay_;
     gpu::Texture2D
         hits_[3]; ///< ends of the parts of the paths of one tile (shaders/lib/parts.glsl)
     gpu::Buffer view_buffer_, lakes_;
