@@ -24,7 +24,8 @@ void wave_bounds(usamplerBuffer limits, WaveBlock waves, float footprint_m, out 
     steep = vec4(0.0);
     levels = vec4(0.0);
     for (int j = 0; j < TARN_CASCADES; ++j) {
-        levels[j] = wave_level(waves, j, footprint_m);
+        // Whole levels: one mip level to look up. What that moves is less than a pixel; slopes stay smooth.
+        levels[j] = floor(wave_level(waves, j, footprint_m) + 0.5);
         int level = int(min(levels[j], float(TARN_WAVE_LEVELS - 1)));
         high[j] = uintBitsToFloat(texelFetch(limits, j * TARN_WAVE_LIMITS + level).r);
         float filtered = 2.83 * high[j] / (waves.patches[j].w * float(1 << level)); // between texels of that level
