@@ -22,7 +22,9 @@ layout(location = 0) uniform vec4 choppiness;
 layout(location = 1) uniform vec4 bound;  // on |height| [m]
 layout(location = 2) uniform vec4 per_m;  // texels a metre
 
+#ifdef TARN_MEASURE_FOLDS
 shared uint folded;
+#endif
 
 uint place(uint cascade, uint field, ivec2 at) {
     const int n = TARN_FFT_N;
@@ -79,6 +81,7 @@ void main() {
     height = clamp(height, -bound[cascade], bound[cascade]);
     imageStore(heights, ivec3(texel, int(cascade)), vec4(height));
     imageStore(slopes, ivec3(texel, int(cascade)), vec4(slope, 0.0, 0.0));
+#ifdef TARN_MEASURE_FOLDS // when asked: a picture needs no such number
     if (gl_LocalInvocationIndex == 0u)
         folded = 0u;
     barrier();
@@ -86,4 +89,5 @@ void main() {
     barrier();
     if (gl_LocalInvocationIndex == 0u)
         atomicMax(limits[cascade * uint(TARN_WAVE_LIMITS) + uint(TARN_WAVE_LEVELS + 1)], folded);
+#endif
 }

@@ -4,7 +4,6 @@
 #include "waves/ripples.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -310,12 +309,24 @@ std::vector<glm::vec3> WaveField::read(int cascade) const {
     return out;
 }
 
-double WaveField::least_eigenvalue(int cascade) const {
-    std::uint32_t bits[waves::most_cascades * TARN_WAVE_LIMITS];
+double WaveField::least_eigenvalue(int cascade) {
+    const std::string defined =
+        text("#define TARN_FFT_N ", passes_.texels, "\n#define TARN_WAVE_FIELDS ", passes_.fields,
+             "\n#define TARN_MEASURE_FOLDS 1\n");
+    gpu::ComputeProgram other(
+        gpu::load_shader(gpu::shader_root(), "passes/wave_surface.comp", {}, defined));
+    std::swap(other, passes_.surface);
+    move_to(time_s_);
+    std::swap(other, passes_.surface);
+    return 1.0 - limits(cascade)[TARN_WAVE_LEVELS + 1];
+}
+
+std::vector<double> WaveField::limits(int cascade) const {
+    float values[waves::most_cascades * TARN_WAVE_LIMITS];
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    glGetNamedBufferSubData(limits_.id(), 0, sizeof bits, bits);
-    return 1.0 -
-           double(std::bit_cast<float>(bits[cascade * TARN_WAVE_LIMITS + TARN_WAVE_LEVELS + 1]));
+    glGetNamedBufferSubData(limits_.id(), 0, sizeof values, values);
+    const float* first = values + cascade * TARN_WAVE_LIMITS;
+    return {first, first + TARN_WAVE_LIMITS};
 }
 
 } // namespace tarn::render

@@ -47,8 +47,12 @@ public:
 
     /// A cascade's height [m], slope east, slope north; texels^2, row = y. Waits for the GPU.
     std::vector<glm::vec3> read(int cascade) const;
+    /// What the walk trusts of a cascade: greatest |height| of each mip level [m] (0 where there is
+    /// no such level), then the steepest slope between texels. Waits for the GPU.
+    std::vector<double> limits(int cascade) const;
     /// Least eigenvalue of the Jacobian of a cascade's displacement: folded where it is negative.
-    double least_eigenvalue(int cascade) const;
+    /// Makes the surface once more, measuring; waits for the GPU.
+    double least_eigenvalue(int cascade);
     /// GPU memory of spectra, transforms and textures.
     std::size_t bytes() const { return bytes_; }
 

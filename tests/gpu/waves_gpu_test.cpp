@@ -242,6 +242,56 @@ TEST(WavesGpu, GerstnerWavesAreTrochoids) {
     }
 }
 
+// What the walk trusts: no water is higher, none steeper between texels; coarser levels are means
+// of four.
+TEST(WavesGpu, LimitsHoldForTheWavesThatAreThere) {
+    test_support::context();
+    for (const int texels : {128, 256, 512}) {
+        waves::Settings s = windy(waves::Model::jonswap, texels, 3);
+        s.ripples.rain_drops_per_m2_s = 30.0;
+        render::WaveField field;
+        field.set(sea_of(s));
+        for (const double time : {5.0, 250.0}) {
+            field.move_to(time);
+            for (std::size_t j = 0; j < field.sea().cascades.size(); ++j) {
+                const auto texel = field.read(int(j));
+                const auto limits = field.limits(int(j));
+                std::vector<double> level(texel.size());
+                double steepest = 0.0;
+                for (int y = 0; y < texels; ++y)
+                    for (int x = 0; x < texels; ++x) {
+                        const auto at = [&](int c, int r) {
+                            return double(texel[std::size_t((r % texels) * texels + c % texels)].x);
+                        };
+                        level[std::size_t(y * texels + x)] = at(x, y);
+                        steepest = std::max(
+                            steepest, std::hypot(at(x + 1, y) - at(x, y), at(x, y + 1) - at(x, y)));
+                    }
+                EXPECT_GE(limits[TARN_WAVE_LEVELS] * 1.000001,
+                          steepest / field.sea().cascades[j].texel_m());
+                EXPECT_LE(limits[TARN_WAVE_LEVELS],
+                          2.1 * steepest / field.sea().cascades[j].texel_m());
+                int side = texels;
+                for (int l = 0; side >= 2; ++l, side /= 2) {
+                    double top = 0.0;
+                    for (const double h : level)
+                        top = std::max(top, std::abs(h));
+                    EXPECT_NEAR(limits[std::size_t(l)], top, 1e-5 * limits[0] + 1e-9)
+                        << texels << " " << j << " " << l;
+                    std::vector<double> next(level.size() / 4);
+                    for (int y = 0; y < side / 2; ++y)
+                        for (int x = 0; x < side / 2; ++x)
+                            for (int k = 0; k < 4; ++k)
+                                next[std::size_t(y * (side / 2) + x)] +=
+                                    0.25 *
+                                    level[std::size_t((2 * y + k / 2) * side + 2 * x + k % 2)];
+                    level = next;
+                }
+            }
+        }
+    }
+}
+
 // The library's sums at any place against the double-precision surface, near enough that nothing is
 // filtered: cascades and closed-form sines.
 TEST(WavesGpu, HeightsAndSlopesAgreeWithTheReferenceBetweenTexels) {
