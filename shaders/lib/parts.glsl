@@ -88,6 +88,12 @@ struct Surface {
     float level;    // mean
 };
 
+// surface_level — mean level of the water that a part met; `offset.w` is how far the walk's water is raised.
+float surface_level(sampler2D heights, ViewBlock view, Part first, End end) {
+    return first.in_water ? first.level
+                          : texelFetch(heights, end.cell, 0).g * view.heights.w + view.heights.z - view.offset.w;
+}
+
 // calm_surface — where there are no waves.
 Surface calm_surface(Part first, End end) {
     return Surface(vec2(0.0), first.in_water ? first.level : first.origin.z + end.t * first.direction.z);

@@ -6,6 +6,8 @@
 // `footprint_m` is not drawn but counted: slopes come with the covariance of what was taken away, so that
 // glitter and mirrored sky keep their mean at every distance.
 #include "shared/wave_block.h"
+#include "lib/fresnel.glsl"
+#include "lib/noise.glsl"
 #ifndef TARN_CASCADES
 #define TARN_CASCADES 4
 #endif
@@ -56,7 +58,8 @@ float wave_height(sampler2DArray heights, sampler2D table, WaveBlock waves, vec2
 vec2 wave_slopes(sampler2DArray slopes, sampler2D table, WaveBlock waves, vec2 at_m, float footprint_m, vec4 amplitude,
                  out vec3 taken) {
     vec2 sum = vec2(0.0);
-    taken = waves.rough.xyz * amplitude[max(TARN_CASCADES - 1, 0)] * amplitude[max(TARN_CASCADES - 1, 0)];
+    float finest = amplitude[int(waves.rough.w)]; // of the wind's
+    taken = waves.rough.xyz * finest * finest;
     for (int j = 0; j < TARN_CASCADES; ++j) {
         vec2 place = waves.patches[j].xy + at_m / waves.patches[j].z;
         float level = wave_level(waves, j, footprint_m), column = min(level, float(TARN_WAVE_LEVELS - 1));
@@ -78,16 +81,16 @@ vec2 wave_slopes(sampler2DArray slopes, sampler2D table, WaveBlock waves, vec2 a
 // The water's surface where a ray met it.
 struct WaveSurface {
     vec2 mean, lot;   // slopes: filtered, and one drawn from those inside the pixel
-    float level;      // of the lake [m]
+    float bright;     // from above: mean reflectance times projected size of the facets that `lot` was drawn from
     vec3 taken;       // covariance of the slopes inside the pixel
 };
 
-// pack_surface — slopes to a two-thousandth of theirs, standard deviations to a thousandth, up to 1.
+// pack_surface — slopes to a two-thousandth of theirs, standard deviations to a two-thousandth, up to 1.
 uvec4 pack_surface(WaveSurface s) {
     vec2 deviation = sqrt(max(s.taken.xz, vec2(1e-12)));
     float correlation = clamp(s.taken.y / (deviation.x * deviation.y), -1.0, 1.0);
     uvec3 parts = uvec3(round(vec3(min(deviation, 1.0) * 2047.0, (0.5 + 0.5 * correlation) * 1023.0)));
-    return uvec4(packHalf2x16(s.mean), packHalf2x16(s.lot), floatBitsToUint(s.level), parts.x | parts.y << 11 | parts.z << 22);
+    return uvec4(packHalf2x16(s.mean), packHalf2x16(s.lot), floatBitsToUint(s.bright), parts.x | parts.y << 11 | parts.z << 22);
 }
 
 WaveSurface unpack_surface(uvec4 p) {
@@ -150,12 +153,51 @@ vec2 visible_slope(VisibleSlopes v, vec3 to_viewer, int i, int j, out float shar
     return slope;
 }
 
-// slope_lot — one slope drawn from the distribution, by two even numbers in [0, 1) (Box & Muller 1958).
-vec2 slope_lot(vec2 mean, vec3 covariance, vec2 even) {
+// slope_of_lot — one slope of the distribution, by two even numbers in [0, 1) (Box & Muller 1958).
+vec2 slope_of_lot(vec2 mean, vec3 covariance, vec2 even) {
     float a = sqrt(max(covariance.x, 1e-12)), b = covariance.y / a;
     float c = sqrt(max(covariance.z - b * b, 0.0)), turn = 6.28318530718 * even.y;
     vec2 lot = sqrt(-2.0 * log(max(1.0 - even.x, 1e-7))) * vec2(cos(turn), sin(turn));
     return mean + vec2(a * lot.x, b * lot.x + c * lot.y);
+}
+
+const int slope_candidates = 8;
+
+// draw_slope — one slope for a ray that goes on, of some drawn from those inside the pixel: facets count by the size
+//              that they turn to the viewer, and by the share that they mirror or let through (resampling, Talbot,
+//              Cline & Egbert 2005). The even numbers fill the square evenly from candidate to candidate and sample
+//              to sample (Roberts' R2 sequence).
+//
+//   eta      as in fresnel_dielectric: counts facets by what they mirror, < 0: by what they let through, 0: alike
+//   weight   mean of what the facets counted by
+vec2 draw_slope(ivec2 pixel, float sample_number, vec3 to_viewer, vec2 mean, vec3 taken, float eta, out float weight) {
+    uint h = lattice_hash(pixel, 91u), choice = lattice_hash(pixel, 17u + uint(sample_number));
+    vec2 start = vec2(h & 0xffffu, h >> 16) / 65536.0, chosen = mean;
+    float sum = 0.0;
+    for (int i = 0; i < slope_candidates; ++i) {
+        vec2 even = fract(start + (sample_number * float(slope_candidates) + float(i)) * vec2(0.7548776662, 0.5698402910));
+        vec2 slope = slope_of_lot(mean, taken, even);
+        float counts = facing(to_viewer, slope);
+        if (eta != 0.0) {
+            float mirror = fresnel_dielectric(clamp(dot(to_viewer, normal_of_slope(slope)), 0.0, 1.0), abs(eta));
+            counts *= eta > 0.0 ? mirror : 1.0 - mirror;
+        }
+        sum += counts;
+        choice = (choice ^ choice >> 15) * 0x2c1b3c6du;
+        choice ^= choice >> 12;
+        if (float(choice >> 8) * sum < counts * 16777216.0)
+            chosen = slope;
+    }
+    weight = sum / float(slope_candidates);
+    return chosen;
+}
+
+// slope_of_part — by which part 1 (mirrored) or 2 (refracted) of a path went on.
+vec2 slope_of_part(WaveSurface surface, int number, bool from_water, ivec2 pixel, float sample_number, vec3 direction, float index) {
+    if (number == 1 || from_water)
+        return surface.lot;
+    float ignored;
+    return draw_slope(pixel, sample_number + 0.5, -direction, surface.mean, surface.taken, -1.0 / index, ignored);
 }
 
 // slope_density — of a normal distribution, per unit of both slopes.

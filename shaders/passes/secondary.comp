@@ -28,7 +28,9 @@ void main() {
     Part first = camera_part(view, local + view.tile.xy);
 #ifdef TARN_WAVES
     WaveSurface met = unpack_surface(imageLoad(surfaces, local));
-    Surface surface = Surface(met.lot, met.level);
+    Surface surface = Surface(slope_of_part(met, number, first.in_water, local + view.tile.xy, view.offset.z,
+                                            first.direction, view.attenuation.w),
+                              surface_level(heights, view, first, first_end));
 #else
     Surface surface = calm_surface(first, first_end);
 #endif

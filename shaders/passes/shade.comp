@@ -120,7 +120,7 @@ struct Glitter {
     vec3 sky;      // radiance of the sky mirrored, reflectance in it
     float mirror;  // mean reflectance
     vec3 sun;      // radiance of the sun mirrored
-    float lot;     // weight of the one slope that rays were sent by
+    float seen;    // mean projected size of the facets
 };
 
 Glitter glitter_of(Part first, End end, WaveSurface surface) {
@@ -143,8 +143,8 @@ Glitter glitter_of(Part first, End end, WaveSurface surface) {
     float least = max(seen, 1e-4);
     g.mirror = seen > 0.0 ? g.mirror / least : 1.0;
     g.sky /= least;
-    g.lot = facing(to_viewer, surface.lot) / least;
-    if (on(TARN_FLAG_SUN_DISC) && (end.flags & end_lit) != 0u) {
+    g.seen = least;
+    if (on(TARN_FLAG_SUN_DISC) && view.sun.z > 0.0 && ((end.flags & end_lit) != 0u || !on(TARN_FLAG_SHADOWS))) {
         // Cox & Munk 1954: the share of facets that throw the sun into the eye. The sun's own width, seen in a
         // mirror, is half of it in slope.
         vec3 halfway = normalize(to_viewer + view.sun.xyz);
@@ -174,7 +174,7 @@ void main() {
     if ((first_end.flags & end_surface) != 0u) {
 #ifdef TARN_WAVES
         WaveSurface met = unpack_surface(imageLoad(surfaces, local));
-        Surface surface = Surface(met.lot, met.level);
+        float level = surface_level(heights, view, first, first_end);
         Glitter glitter;
         if (!first.in_water)
             glitter = glitter_of(first, first_end, met);
@@ -182,6 +182,10 @@ void main() {
         Surface surface = calm_surface(first, first_end);
 #endif
         for (int number = 1; number < 3; ++number) {
+#ifdef TARN_WAVES
+            Surface surface = Surface(slope_of_part(met, number, first.in_water, pixel, view.offset.z, first.direction,
+                                                    view.attenuation.w), level);
+#endif
             Part part = split_part(view, first, first_end, surface, number);
             if (!wanted(view, part, number))
                 continue;
@@ -189,23 +193,24 @@ void main() {
             vec3 ignored;
 #ifdef TARN_WAVES
             if (!first.in_water) {
-                if (number == 2) {
+                if (number == 2) { // drawn by what facets let through
                     part.weight = (1.0 - glitter.mirror) / (view.attenuation.w * view.attenuation.w);
                 } else {
-                    // The sky's mean is known; where the ray met land instead, that takes the place of
-                    // the sky in its direction.
+                    // The sky's mean is known; where the ray met land instead, that takes the place of the
+                    // sky in its direction.
                     radiance += remaining * (glitter.sky + glitter.sun);
                     if ((end.flags & end_ground) == 0u)
                         continue;
-                    // One steep facet must not take more than all facets bring.
-                    part.weight = min(part.weight * glitter.lot, glitter.mirror);
-                    radiance -= remaining * part.weight * sky_radiance(sky_table, part.direction, view.sun.xyz);
+                    vec3 hidden = sky_radiance(sky_table, part.direction, view.sun.xyz);
+                    part.weight = met.bright / glitter.seen;
+                    radiance -= remaining * part.weight * hidden;
                 }
             }
 #endif
             radiance += remaining * part.weight * part_radiance(part, end, first_end.t, ignored);
         }
     }
+    radiance = max(radiance, vec3(0.0)); // a sample's land may hide more sky than its pixel has in the mean
     radiance *= view.options.w;
     if (view.offset.z > 0.5)
         radiance += imageLoad(radiance_image, pixel).rgb;

@@ -31,7 +31,9 @@ void main() {
             return;
 #ifdef TARN_WAVES
         WaveSurface met = unpack_surface(imageLoad(surfaces, local));
-        Surface surface = Surface(met.lot, met.level);
+        Surface surface = Surface(slope_of_part(met, number, part.in_water, local + view.tile.xy, view.offset.z,
+                                            part.direction, view.attenuation.w),
+                              surface_level(heights, view, part, first_end));
 #else
         Surface surface = calm_surface(part, first_end);
 #endif

@@ -5,7 +5,6 @@
 //
 // A camera above or below the slab sees rays enter it and never leave it: they end inside. One within it
 // (TARN_IN_SLAB) sends rays out of it, too; those go on by the walk, until they come to a slab again.
-#include "lib/noise.glsl"
 #include "lib/parts.glsl"
 #include "lib/walks/meet_waves.glsl"
 #ifdef TARN_IN_SLAB
@@ -27,27 +26,19 @@ layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform uimage2D hits;
 layout(binding = TARN_IMAGE_SURFACE, rgba32ui) uniform writeonly uimage2D surfaces;
 layout(binding = TARN_IMAGE_DISTANCE, r32f) uniform writeonly image2D distance_image;
 
-// Two even numbers for a pixel: from sample to sample they fill the square evenly (Roberts' R2 sequence).
-vec2 even_numbers(ivec2 pixel) {
-    uint h = lattice_hash(pixel, 91u);
-    vec2 start = vec2(h & 0xffffu, h >> 16) / 65536.0;
-    return fract(start + view.offset.z * vec2(0.7548776662, 0.5698402910));
-}
-
-// The surface where the waves were met, for the passes that follow. One of its slopes is drawn from those inside
-// the pixel: mirrored and refracted rays go where facets send them, not where their mean would.
+// The surface where the waves were met, for the passes that follow.
 void store_surface(ivec2 pixel, Part part, End end) {
     vec4 ground = textureGather(heights, (vec2(end.cell) + 1.0) * view.inverse_size.xy, 0) * view.heights.y;
-    float coded = texelFetch(heights, end.cell, 0).g * view.heights.w + view.heights.z;
-    float level = part.in_water ? part.level : coded - waves.counts.w;
+    float level = surface_level(heights, view, part, end);
     vec2 at = (vec2(end.cell) + end.inside - view.base.xy) * view.grid.z;
     at.y = -at.y;
     vec4 amplitude = wave_fade(waves, level - bilinear(ground, end.inside)) * wave_amplitude(amplitudes, waves, at);
-    float footprint = wave_footprint(view.camera.w, end.t, part.direction.z);
+    float footprint = wave_footprint(view.camera.w, end.t, part.direction.z), bright;
     vec3 taken;
     vec2 mean = wave_slopes(wave_slope_layers, wave_table, waves, at, footprint, amplitude, taken);
-    vec2 lot = slope_lot(mean, taken, even_numbers(pixel));
-    imageStore(surfaces, pixel - view.tile.xy, pack_surface(WaveSurface(mean, lot, level, taken)));
+    vec3 to_viewer = (part.in_water ? 1.0 : -1.0) * part.direction;
+    vec2 lot = draw_slope(pixel, view.offset.z, to_viewer, mean, taken, part.in_water ? 0.0 : 1.0 / view.attenuation.w, bright);
+    imageStore(surfaces, pixel - view.tile.xy, pack_surface(WaveSurface(mean, lot, bright, taken)));
 }
 
 void main() {

@@ -1,6 +1,7 @@
 #version 450 core
-// passes/wave_surface.comp — one height and one slope over each place, from the transformed fields.
-// Reads fields; writes level 0 of the waves' texture. One invocation a texel and cascade (z).
+// passes/wave_surface.comp — one height and one slope over each place, from the transformed fields, and the first
+// three mip levels of both, since they are at hand.
+// Reads fields; writes levels 0 to 3 of the waves' textures, and their limits. One invocation a texel and cascade (z).
 //
 // Choppy water (Tessendorf 2001, sec. 3.5): the point over x came from x' with x' + choppiness D(x') = x, found
 // by repeated substitution and Newton's method. There is one such point while nothing folds; `choppiness` is
@@ -13,15 +14,18 @@
 #ifndef TARN_WAVE_FIELDS
 #define TARN_WAVE_FIELDS 2 // pairs of pairs: 1 without displacement
 #endif
-layout(local_size_x = 16, local_size_y = 8) in;
+layout(local_size_x = 16, local_size_y = 16) in;
 layout(binding = TARN_BUFFER_WAVE_FIELDS, std430) readonly buffer Fields { vec4 fields[]; };
-layout(binding = TARN_IMAGE_WAVE_HEIGHTS, r32f) uniform writeonly image2DArray heights;
-layout(binding = TARN_IMAGE_WAVE_SLOPES, rg16f) uniform writeonly image2DArray slopes;
+layout(binding = TARN_IMAGE_WAVE_HEIGHTS, r32f) uniform writeonly image2DArray heights[4];
+layout(binding = TARN_IMAGE_WAVE_SLOPES, rg16f) uniform writeonly image2DArray slopes[4];
 layout(binding = TARN_BUFFER_WAVE_LIMITS, std430) buffer Limits { uint limits[]; };
 layout(location = 0) uniform vec4 choppiness;
 layout(location = 1) uniform vec4 bound;  // on |height| [m]
 layout(location = 2) uniform vec4 per_m;  // texels a metre
 
+shared vec3 tile[256];
+shared uint highest[4]; // of each level
+shared uint steepest;
 #ifdef TARN_MEASURE_FOLDS
 shared uint folded;
 #endif
@@ -79,8 +83,46 @@ void main() {
     slope = rise.zw;
 #endif
     height = clamp(height, -bound[cascade], bound[cascade]);
-    imageStore(heights, ivec3(texel, int(cascade)), vec4(height));
-    imageStore(slopes, ivec3(texel, int(cascade)), vec4(slope, 0.0, 0.0));
+    // Limits that the walk trusts, and mip levels by halving the tile.
+    ivec2 local = ivec2(gl_LocalInvocationID.xy);
+    uint index = gl_LocalInvocationIndex;
+    vec3 sum = vec3(height, slope);
+    tile[index] = sum;
+    if (index < 4u)
+        highest[index] = 0u;
+    if (index == 4u)
+        steepest = 0u;
+    barrier();
+    // Between texels the surface rises as its neighbours differ; at the tile's rim its own slope has to tell.
+    float east = local.x < 15 ? abs(tile[index + 1u].x - height) * per_m[cascade] : abs(slope.x);
+    float north = local.y < 15 ? abs(tile[index + 16u].x - height) * per_m[cascade] : abs(slope.y);
+    atomicMax(steepest, floatBitsToUint(length(vec2(max(east, abs(slope.x)), max(north, abs(slope.y))))));
+    for (int level = 0; level < 4; ++level) {
+        int wide = 16 >> level;
+        bool at_work = all(lessThan(local, ivec2(wide)));
+        if (at_work) {
+            ivec3 at = ivec3(ivec2(gl_WorkGroupID.xy) * wide + local, int(cascade));
+            imageStore(heights[level], at, vec4(sum.x));
+            imageStore(slopes[level], at, vec4(sum.yz, 0.0, 0.0));
+            atomicMax(highest[level], floatBitsToUint(abs(sum.x)));
+        }
+        if (level == 3)
+            break;
+        barrier();
+        if (level > 0 && at_work)
+            tile[16 * local.y + local.x] = sum;
+        barrier();
+        if (all(lessThan(local, ivec2(wide / 2)))) {
+            int first = 32 * local.y + 2 * local.x;
+            sum = 0.25 * (tile[first] + tile[first + 1] + tile[first + 16] + tile[first + 17]);
+        }
+    }
+    barrier();
+    uint limit = cascade * uint(TARN_WAVE_LIMITS);
+    if (index < 4u)
+        atomicMax(limits[limit + index], highest[index]);
+    if (index == 4u) // no texel's patch is steeper than the steepest edges on both axes together
+        atomicMax(limits[limit + uint(TARN_WAVE_LEVELS)], floatBitsToUint(1.4143 * uintBitsToFloat(steepest)));
 #ifdef TARN_MEASURE_FOLDS // when asked: a picture needs no such number
     if (gl_LocalInvocationIndex == 0u)
         folded = 0u;

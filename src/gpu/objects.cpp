@@ -46,7 +46,7 @@ void Texture2D::download(GLenum components, GLenum type, void* out, std::size_t 
 
 TextureLayers::TextureLayers(GLenum format, int side_px, int layers, const std::string& label)
     : format_(format), side_px_(side_px), layers_(layers), levels_(1) {
-    while (side_px >> (levels_ + 1) > 0) // to 2 x 2: one texel would say nothing but the mean
+    while (side_px >> (levels_ + 2) > 0) // to 4 x 4: fewer texels would say little but the mean
         ++levels_;
     GLuint id = 0;
     glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);

@@ -69,7 +69,8 @@ private:
     int width_px_ = 0, height_px_ = 0;
 };
 
-/// Square layers of one size with all their mip levels; look-ups are trilinear and wrap around.
+/// Square layers of one size with their mip levels down to 4 x 4; look-ups are trilinear and wrap
+/// around.
 class TextureLayers {
 public:
     TextureLayers() = default;

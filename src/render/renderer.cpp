@@ -117,8 +117,7 @@ std::string Renderer::walk_file() const {
 
 const Renderer::WavyPasses& Renderer::wavy_passes() {
     const std::string defined = (rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "") +
-                                waves_->defines() +
-                                (camera_in_slab_ ? "#define TARN_IN_SLAB 1\n" : "");
+                                waves_->defines() + (in_slab_ ? "#define TARN_IN_SLAB 1\n" : "");
     const auto key = std::pair(walk_, defined);
     if (const auto known = wavy_passes_.find(key); known != wavy_passes_.end())
         return known->second;
@@ -145,6 +144,7 @@ void Renderer::lift_water(double lift_m) {
     block_.units = {per_m, block_.heights.z * per_m, block_.heights.w * per_m,
                     block_.grid.w * per_m};
     block_.slab.y = float(water_top_m_ + lift_m - ground.offset_m) * per_m;
+    view_buffer_.write(&block_, sizeof block_); // bounds are made from what it says
 }
 
 void Renderer::prepare_waves(const scene::View& view) {
@@ -245,22 +245,13 @@ void Renderer::prepare(const scene::View& view) {
         overlay_.upload(GL_RGBA, GL_FLOAT, o.pixels.data());
         overlay_.bind(TARN_TEXTURE_OVERLAY);
     }
-    const auto water = scene_.water_level_m(p.x, p.y);
-    // Between trough and crest the waves decide where the camera is, asked of them below.
-    double surface_m = water.value_or(0.0);
-    camera_in_slab_ = water && wavy() && std::abs(p.z - *water) <= lift_m_;
-    if (camera_in_slab_)
-        surface_m += waves_->height_at({p.x, p.y}, *water - ground.elevation_m(p.x, p.y));
-    if (water && p.z < surface_m) {
-        flags |= TARN_FLAG_UNDER_WATER;
-        block_.options.y = float(*water - ground.offset_m);
-        block_.options.z = scene_.lake_at_level(*water).bed != Bed::unknown ? 1.0f : 0.0f;
-    }
     block_.counts.x = static_cast<std::uint32_t>(settings.width_px);
     block_.counts.y = static_cast<std::uint32_t>(settings.height_px);
     block_.inverse_size.z = 1.0f / float(settings.width_px);
     block_.inverse_size.w = 1.0f / float(settings.height_px);
     block_.counts.z = flags;
+    camera_m_ = p;
+    locate_camera();
 
     sky_ = gpu::Texture2D(GL_RGB32F, light.sky.azimuths, light.sky.elevations, 1,
                           gpu::Filter::linear, "sky");
@@ -291,11 +282,9 @@ void Renderer::prepare(const scene::View& view) {
     if (wavy() && (surfaces_.width_px() != settings.width_px || surfaces_.height_px() != tile_rows))
         surfaces_ = gpu::Texture2D(GL_RGBA32UI, settings.width_px, tile_rows, 1,
                                    gpu::Filter::nearest, "surfaces");
-    const bool from_above = (flags & TARN_FLAG_UNDER_WATER) == 0;
     use_walk(settings.walk, settings.walk_setting);
-    if (settings.shadows || settings.reflection || settings.refraction)
-        bounds_.prepare(walk_, false);
-    bind_field(walk_, from_above);
+    bounds_.prepare(walk_, false);
+    bind_field(walk_, !under_water());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_LAKES, lakes_.id());
     sky_.bind(TARN_TEXTURE_SKY);
     ortho_.bind(TARN_TEXTURE_ORTHO);
@@ -324,7 +313,30 @@ void Renderer::move_waves(double time_s) {
     waves_->move_to(time_s);
     const Heightfield& ground = scene_.ground;
     waves_->bind({ground.x_m(double(block_.base.x)), ground.y_m(double(block_.base.y))}, lift_m_);
+    const bool was_under = under_water();
+    locate_camera(); // a crest may have come over it
+    if (under_water() != was_under)
+        bind_field(walk_, !under_water());
     bind_images();
+}
+
+// In water or above it, by the waves of the moment.
+void Renderer::locate_camera() {
+    const glm::dvec3& p = camera_m_;
+    const auto water = scene_.water_level_m(p.x, p.y);
+    double surface_m = water.value_or(0.0);
+    const bool between = water && wavy() && std::abs(p.z - *water) <= lift_m_;
+    if (between)
+        surface_m += waves_->height_at({p.x, p.y}, *water - scene_.ground.elevation_m(p.x, p.y));
+    const bool under = water && p.z < surface_m;
+    block_.counts.z &= ~static_cast<std::uint32_t>(TARN_FLAG_UNDER_WATER);
+    if (under) {
+        block_.counts.z |= TARN_FLAG_UNDER_WATER;
+        block_.options.y = float(*water - scene_.ground.offset_m);
+        block_.options.z = scene_.lake_at_level(*water).bed != Bed::unknown ? 1.0f : 0.0f;
+    }
+    // Rays that rise can enter a slab from its side, and leave it, from anywhere below its top.
+    in_slab_ = wavy() && (under ? between : p.z <= water_top_m_ + lift_m_);
 }
 
 void Renderer::set_sample(int sample, int samples) {
@@ -341,7 +353,7 @@ void Renderer::draw_tile() {
     glMemoryBarrier(images);
     const WalkPasses& calm = passes_.at(walk_);
     const WavyPasses* wavy_ones = wavy() ? &wavy_passes() : nullptr;
-    bind_walk((block_.counts.z & TARN_FLAG_UNDER_WATER) == 0); // only from above is water met
+    bind_walk(!under_water()); // only from above is water met
     const auto begins = [&](const char* name) {
         if (on_pass)
             on_pass(name);
@@ -383,7 +395,7 @@ void Renderer::find_beams() {
 
 void Renderer::find_first_hits() {
     view_buffer_.write(&block_, sizeof block_);
-    bind_walk((block_.counts.z & TARN_FLAG_UNDER_WATER) == 0);
+    bind_walk(!under_water());
     find_beams();
     const WalkPasses& pass = passes_.at(walk_);
     pass.first_hit.use();
@@ -435,7 +447,7 @@ void Renderer::draw_once() {
     if (on_pass)
         on_pass("beams");
     if (block_.offset.z == 0.0f) { // beams hold whole pixels: the first sample's serve all
-        bind_walk((block_.counts.z & TARN_FLAG_UNDER_WATER) == 0);
+        bind_walk(!under_water());
         find_beams();
     }
     for (int top = 0; top < height; top += rows) {

@@ -103,6 +103,8 @@ private:
     std::string walk_file() const;
     void prepare_waves(const scene::View& view);
     void bind_images();
+    void locate_camera();
+    bool under_water() const { return (block_.counts.z & TARN_FLAG_UNDER_WATER) != 0; }
     void lift_water(double lift_m);
     bool wavy() const { return waves_ && !waves_->sea().still(); }
     const WavyPasses& wavy_passes();
@@ -124,8 +126,10 @@ private:
     std::optional<WaveField> waves_;
     gpu::Texture2D surfaces_; ///< of the water met, for the passes after the first; with waves only
     double top_m_ = 0.0, water_top_m_ = 0.0; ///< highest node, above z = 0; highest level
-    bool camera_in_slab_ = false;            ///< between the lowest trough and the highest crest
-    double lift_m_ = 0.0;                    ///< how far the walk's water is raised above its level
+    glm::dvec3 camera_m_{0.0};
+    bool in_slab_ =
+        false;            ///< rays may enter the slab of a lake's waves from its side, and leave it
+    double lift_m_ = 0.0; ///< how far the walk's water is raised above its level
     scene::Walk walk_ = scene::Walk::cone_map;
     std::size_t heights_bytes_ = 0;
     int samples_ = 1;

@@ -48,6 +48,7 @@ Ripples::Ripples(const RipplePond& pond)
 
 void Ripples::rest(long long number) {
     const float zero = 0.0f;
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     for (const gpu::Texture2D& state : states_)
         glClearTexImage(state.id(), 0, GL_RED, GL_FLOAT, &zero);
     number_ = number;

@@ -12,6 +12,8 @@ namespace tarn::render {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
+/// Mip levels that passes/wave_surface.comp makes beside level 0.
+constexpr int surface_levels = 3;
 constexpr int table_rows = waves::most_cascades + 1;
 
 GLuint groups(int items, int of) { return static_cast<GLuint>((items + of - 1) / of); }
@@ -167,9 +169,26 @@ void WaveField::transform_spectra(const std::function<void(const char*)>& begins
     set_uniform(1, per_cascade(sea_.cascades, [](const waves::Cascade& c) { return c.bound_m; }));
     set_uniform(
         2, per_cascade(sea_.cascades, [](const waves::Cascade& c) { return 1.0 / c.texel_m(); }));
-    heights_.bind_image(TARN_IMAGE_WAVE_HEIGHTS, GL_WRITE_ONLY, 0);
-    slopes_.bind_image(TARN_IMAGE_WAVE_SLOPES, GL_WRITE_ONLY, 0);
-    glDispatchCompute(groups(n, 16), groups(n, 8), GLuint(count));
+    for (int level = 0; level <= surface_levels; ++level) {
+        heights_.bind_image(GLuint(TARN_IMAGE_WAVE_HEIGHTS + level), GL_WRITE_ONLY, level);
+        slopes_.bind_image(GLuint(TARN_IMAGE_WAVE_SLOPES + level), GL_WRITE_ONLY, level);
+    }
+    glDispatchCompute(groups(n, 16), groups(n, 16), GLuint(count));
+}
+
+void WaveField::make_levels(int source, int first_layer, int layers) {
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    const int made = std::min(4, heights_.levels() - 1 - source);
+    for (int k = 0; k < 4; ++k) {
+        const int level = source + 1 + std::min(k, made - 1);
+        heights_.bind_image(GLuint(TARN_IMAGE_WAVE_HEIGHTS + k), GL_WRITE_ONLY, level);
+        slopes_.bind_image(GLuint(TARN_IMAGE_WAVE_SLOPES + k), GL_WRITE_ONLY, level);
+    }
+    glUniform1i(0, source);
+    glUniform1i(1, made);
+    glUniform1i(3, first_layer);
+    const GLuint across = groups(std::max(heights_.side_px() >> source, 1), 16);
+    glDispatchCompute(across, across, GLuint(layers));
 }
 
 void WaveField::move_to(double time_s) {
@@ -180,13 +199,14 @@ void WaveField::move_to(double time_s) {
         if (on_pass)
             on_pass(name);
     };
-    const int n = passes_.texels, count = spectral();
+    const int count = spectral();
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_WAVE_LIMITS, limits_.id());
     if (count > 0)
         transform_spectra(begins);
     if (ripples_) {
         begins("ripples");
         const GLintptr own = GLintptr(count) * TARN_WAVE_LIMITS * GLintptr(sizeof(GLuint));
+        glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         glClearNamedBufferSubData(limits_.id(), GL_R32UI, own, TARN_WAVE_LIMITS * sizeof(GLuint),
                                   GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
         ripples_->move_to(time_s);
@@ -198,19 +218,11 @@ void WaveField::move_to(double time_s) {
     slopes_.bind(TARN_TEXTURE_SLOPES);
     set_uniform(
         2, per_cascade(sea_.cascades, [](const waves::Cascade& c) { return 1.0 / c.texel_m(); }));
-    for (int source = 0; source + 1 < heights_.levels(); source += 4) {
-        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-        const int made = std::min(4, heights_.levels() - 1 - source);
-        for (int k = 0; k < 4; ++k) {
-            const int level = source + 1 + std::min(k, made - 1);
-            heights_.bind_image(GLuint(TARN_IMAGE_WAVE_HEIGHTS + k), GL_WRITE_ONLY, level);
-            slopes_.bind_image(GLuint(TARN_IMAGE_WAVE_SLOPES + k), GL_WRITE_ONLY, level);
-        }
-        glUniform1i(0, source);
-        glUniform1i(1, made);
-        const GLuint across = groups(std::max(n >> source, 1), 16);
-        glDispatchCompute(across, across, GLuint(sea_.cascades.size()));
-    }
+    // Those of a spectrum have their first levels already.
+    if (ripples_)
+        make_levels(0, count, 1);
+    for (int source = surface_levels; source + 1 < heights_.levels(); source += 4)
+        make_levels(source, 0, int(sea_.cascades.size()));
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     begins("end");
 }
@@ -245,7 +257,8 @@ void WaveField::bind(glm::dvec2 base, double lift_m) {
     block.map = {float((base.x - sea_.amplitude_west_m) / wide),
                  float((sea_.amplitude_north_m - base.y) / high), float(1.0 / wide),
                  float(-1.0 / high)};
-    block.rough = {float(sea_.roughness.xx), float(sea_.roughness.xy), float(sea_.roughness.yy), 0};
+    block.rough = {float(sea_.roughness.xx), float(sea_.roughness.xy), float(sea_.roughness.yy),
+                   float(std::max(spectral() - 1, 0))};
     if (std::memcmp(&block, &last_block_, sizeof block) != 0) {
         block_.write(&block, sizeof block);
         last_block_ = block;
@@ -274,6 +287,7 @@ double WaveField::height_at(glm::dvec2 place, double depth_m) const {
         return (at(c, r) * (1 - u) + at(c + 1, r) * u) * (1 - v) +
                (at(c, r + 1) * (1 - u) + at(c + 1, r + 1) * u) * v;
     };
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     double sum = 0.0;
     for (std::size_t j = 0; j < sea_.cascades.size(); ++j) {
         const waves::Cascade& c = sea_.cascades[j];

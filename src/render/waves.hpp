@@ -65,6 +65,7 @@ private:
     void build_passes();
     void upload_spectra();
     void transform_spectra(const std::function<void(const char*)>& begins);
+    void make_levels(int source, int first_layer, int layers);
     int spectral() const; ///< cascades that come from a spectrum: the first ones
 
     waves::Sea sea_;

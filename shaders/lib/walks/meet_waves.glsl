@@ -6,11 +6,13 @@
 // approached in steps that they cannot rise through: gap over the closing speed, which the steepest slope
 // there is bounds (sphere tracing, Hart 1996; the safety radius of Baboud & Decoret for a dynamic surface).
 // Source  as said; limits from passes/wave_levels.comp, of the waves at this moment.
-// Fails   within a fifth of a pixel's footprint, where it stops; a ray that has made 96 steps in one cell without
-//         meeting anything goes on with the next cell.
+// Fails   crests thinner than a tenth of a pixel's footprint, the shortest step, may be passed; a ray that has made 2048 steps in one cell
+//         without meeting anything goes on with the next cell.
 #include "lib/heightfield.glsl"
 #include "lib/waves.glsl"
 
+// A cell may be tens of metres wide and a step close to the eye a centimetre. Far fewer are usual: 8 to 12.
+const int most_steps = 2048;
 const int met_nothing = 0, met_ground = 1, met_water = 2;
 
 // wave_footprint — width of the filter for heights and slopes seen in a pixel: the geometric mean of the
@@ -48,10 +50,6 @@ int meet_waves(sampler2D heights, sampler2DArray wave_heights, sampler2D amplitu
     float to_m = 1.0 / field.per_m, spacing = 1.0 / field.per_spacing, lift = waves.counts.w;
     vec2 cell = cell_at(span, span.t);
     float t = span.t, sink = ray.direction.z;
-    float footprint = wave_footprint(pixel_rad, max(t, 0.1), sink);
-    float near = max(0.2 * footprint, 1e-4);
-    vec4 high, steep, levels;
-    wave_bounds(limits, waves, footprint, high, steep, levels);
     float pace = length(span.d) * spacing; // metres along the ground a metre of path
     for (int steps = int(field.cells.x + field.cells.y) + 8; steps >= 0; --steps) {
         vec2 t_border = borders(span, cell);
@@ -68,6 +66,10 @@ int meet_waves(sampler2D heights, sampler2DArray wave_heights, sampler2D amplitu
         over_level = Gap(over_level.above * to_m, over_level.below * to_m, over_level.curve * to_m);
         float s_ground = first_crossing(over_ground), s_stop = min(s_ground, 1.0);
         if (wet) {
+            // By the cell: near the horizon a pixel's footprint grows along the way.
+            float footprint = wave_footprint(pixel_rad, max(t, 0.1), sink), near = max(0.2 * footprint, 1e-4);
+            vec4 high, steep, levels;
+            wave_bounds(limits, waves, footprint, high, steep, levels);
             float tilt = over_level.below - over_level.above - over_level.curve;
             Gap to_bed = Gap(over_ground.above * to_m, over_ground.below * to_m, over_ground.curve * to_m);
             float bed_tilt = to_bed.below - to_bed.above - to_bed.curve;
@@ -93,7 +95,8 @@ int meet_waves(sampler2D heights, sampler2DArray wave_heights, sampler2D amplitu
             // Too low to be seen: a plane.
             float s = reach < near ? first_crossing(Gap(side * over_level.above, side * over_level.below, side * over_level.curve)) : 0.0;
             bool met = s > 0.0 && s <= s_stop;
-            for (int i = 0; i < 96 && s < s_stop && !met; ++i) {
+            float last_gap = 0.0, last_s = 0.0;
+            for (int i = 0; i < most_steps && s < s_stop && !met; ++i) {
                 float level_gap = over_level.above + s * (tilt + s * over_level.curve);
                 float stride = (side * level_gap - reach) / calm_closing; // above the highest wave
                 if (stride <= 0.0) {
@@ -107,12 +110,16 @@ int meet_waves(sampler2D heights, sampler2DArray wave_heights, sampler2D amplitu
                         if (TARN_CASCADES > 0)
                             gap -= side * amplitude[j] * cascade_height(wave_heights, waves, j, at, levels[j]);
                         stride = max(stride, (gap - rest[j]) / closing[j]);
-                        if (gap - rest[j] > rest[j])
+                        met = gap <= 0.0 && j >= TARN_CASCADES - 1;
+                        if (met || gap - rest[j] > rest[j])
                             break;
-                        met = gap <= near && j >= TARN_CASCADES - 1;
                     }
-                    if (met)
+                    if (met) { // between the last step and this one: where a straight line says
+                        s = last_gap > 0.0 ? mix(last_s, s, last_gap / (last_gap - gap)) : s;
                         break;
+                    }
+                    last_gap = gap;
+                    last_s = s;
                 }
                 s += max(stride, 0.5 * near / closing.x);
             }
