@@ -103,7 +103,7 @@ int run_waves(Words& words) {
     for (const auto& lake : report.lakes)
         print_lake(lake);
     if (!sea.still()) {
-        std::cout << "drawn: Hs " << fixed(r.significant_height_m, 3)
+        std::cout << "drawn: Hs " << fixed(r.drawn_height_m, 3)
                   << " m at the roughest place, waves of " << metres(r.longest_m) << " down to "
                   << metres(r.shortest_m) << ", mean square slope " << fixed(r.drawn_slope, 4)
                   << " of " << fixed(r.mean_square_slope, 4) << ", the rest counts as roughness\n";

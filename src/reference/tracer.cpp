@@ -39,6 +39,7 @@ struct Meeting {
     Hit hit;
     double level_m = 0.0;       ///< of the water
     glm::dvec2 slope{0.0, 0.0}; ///< of its surface there
+    double rough = 1.0;         ///< share of the roughness that is left there
 };
 
 /// Where the random numbers of a pixel's sample begin: for slopes of waves too short to be drawn.
@@ -111,7 +112,10 @@ private:
         if (waves_ && sea_.roughness.trace() > 0.0) {
             // Facets count by the size that they turn to the viewer: drawn, and taken with that
             // chance.
-            const waves::SlopeCovariance& r = sea_.roughness;
+            waves::SlopeCovariance r = sea_.roughness;
+            r.xx *= at.rough * at.rough;
+            r.xy *= at.rough * at.rough;
+            r.yy *= at.rough * at.rough;
             const double a = std::sqrt(r.xx), b = a > 0.0 ? r.xy / a : 0.0;
             const double c = std::sqrt(std::max(r.yy - b * b, 0.0));
             const double side = from_water ? 1.0 : -1.0;
@@ -222,7 +226,8 @@ private:
 
     Meeting finish(glm::dvec3 p, double t, double level) const {
         const double depth = level - scene_.ground.elevation_m(p.x, p.y);
-        return {hit_at(p, t, true), level, waves_->slope({p.x, p.y}, depth)};
+        return {hit_at(p, t, true), level, waves_->slope({p.x, p.y}, depth),
+                waves_->finest_share({p.x, p.y}, depth)};
     }
 
     /// The first of ground and water in the air.
@@ -410,13 +415,11 @@ private:
         Meeting surface{{}, lake.level_m, {0.0, 0.0}};
         if (waves_ && lot) {
             to_surface = infinity;
-            const auto met = lake.bed_known
-                                 ? meet_in_water(origin, direction, lake, longest_path_m_)
-                                 : std::optional<Meeting>();
+            const auto met = meet_in_water(origin, direction, lake, longest_path_m_);
             if (met && met->hit.water) {
                 to_surface = met->hit.t;
                 surface = *met;
-            } else if (met) {
+            } else if (met && lake.bed_known) {
                 hit = met->hit;
             }
         } else if (lake.bed_known) {

@@ -165,6 +165,14 @@ WaveSurface::Sample WaveSurface::sum(glm::dvec2 place, double depth_m) const {
     return out;
 }
 
+double WaveSurface::finest_share(glm::dvec2 place, double depth_m) const {
+    std::size_t finest = 0;
+    for (std::size_t j = 0; j < sea_.cascades.size(); ++j)
+        if (!sea_.cascades[j].ripples)
+            finest = j;
+    return std::clamp(depth_m / std::max(sea_.full_depth_m, 1e-6), 0.0, 1.0) * share(place, finest);
+}
+
 double WaveSurface::height_m(glm::dvec2 place, double depth_m) const {
     return sum(place, depth_m).height;
 }

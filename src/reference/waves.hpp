@@ -34,6 +34,9 @@ public:
     /// Rise per metre east and north; the fade's own slope is left out, as on the GPU.
     glm::dvec2 slope(glm::dvec2 place_m, double depth_m) const;
     double bound_m() const { return bound_m_; }
+    /// By which waves too short to be drawn are lower there: the finest cascade's share and the
+    /// fade.
+    double finest_share(glm::dvec2 place_m, double depth_m) const;
     /// Steepest slope of all waves together.
     double steepest() const { return steepest_; }
     /// No step along the water need be shorter to see each wave [m].

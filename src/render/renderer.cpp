@@ -458,6 +458,10 @@ void Renderer::draw_once() {
 
 Image Renderer::draw(const scene::View& view, const std::function<void(double)>& progress) {
     prepare(view);
+    return draw_again(progress);
+}
+
+Image Renderer::draw_again(const std::function<void(double)>& progress) {
     for (int sample = 0; sample < samples_; ++sample) {
         set_sample(sample, samples_);
         draw_once();

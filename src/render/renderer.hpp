@@ -45,6 +45,9 @@ public:
     /// @param progress  called after each sample with its share; may throw to stop
     Image draw(const scene::View& view, const std::function<void(double)>& progress = {});
 
+    /// The picture of the last prepare(), or of a later move_waves(), all its samples.
+    Image draw_again(const std::function<void(double)>& progress = {});
+
     /// Draws one sample, tile by tile, and leaves it on the GPU. Call prepare() first.
     void draw_once();
 

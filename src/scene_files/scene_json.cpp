@@ -364,6 +364,7 @@ std::string waves_json(const WavesReport& r) {
                 {"wind_m_per_s", r.sea.wind_m_per_s},
                 {"wind_from_deg", r.sea.wind_from_deg}};
     json drawn = numbers(r.sea);
+    drawn["drawn_height_m"] = r.sea.drawn_height_m;
     drawn["drawn_slope"] = r.sea.drawn_slope;
     drawn["longest_m"] = r.sea.longest_m;
     drawn["shortest_m"] = r.sea.shortest_m;

@@ -22,19 +22,29 @@ WaterMask water_mask(const Heightfield& ground, const Heightfield& water, int mo
     const GridSize size{std::max(1, (nodes.cols - 1 + stride - 1) / stride),
                         std::max(1, (nodes.rows - 1 + stride - 1) / stride)};
     mask.open = Grid<std::uint8_t>(size);
+    mask.wet_share = Grid<float>(size);
     mask.depth_m = Grid<float>(size);
-    for (int row = 0; row < size.rows; ++row)
-        for (int col = 0; col < size.cols; ++col) {
-            const Node node{std::min(col * stride + stride / 2, nodes.cols - 1),
-                            std::min(row * stride + stride / 2, nodes.rows - 1)};
-            if (water.codes[node] == no_water_code)
-                continue;
-            const double depth = water.elevation_m(node) - ground.elevation_m(node);
-            if (depth > 0.0) {
-                mask.open[{col, row}] = 1;
-                mask.depth_m[{col, row}] = float(depth);
+    share_out(size.rows, 0, [&](int first, int last) {
+        for (int row = first; row < last; ++row)
+            for (int col = 0; col < size.cols; ++col) {
+                int seen = 0, wet = 0;
+                double depth_sum = 0.0;
+                for (int r = row * stride; r < std::min((row + 1) * stride, nodes.rows); ++r)
+                    for (int c = col * stride; c < std::min((col + 1) * stride, nodes.cols); ++c) {
+                        ++seen;
+                        if (water.codes[{c, r}] == no_water_code)
+                            continue;
+                        const double depth = water.elevation_m({c, r}) - ground.elevation_m({c, r});
+                        if (depth > 0.0) {
+                            ++wet;
+                            depth_sum += depth;
+                        }
+                    }
+                mask.open[{col, row}] = 2 * wet >= seen && wet > 0;
+                mask.wet_share[{col, row}] = float(wet) / float(std::max(seen, 1));
+                mask.depth_m[{col, row}] = wet > 0 ? float(depth_sum / wet) : 0.0f;
             }
-        }
+    });
     return mask;
 }
 
@@ -79,6 +89,21 @@ Grid<float> effective_fetch_m(const WaterMask& mask, double from_deg) {
                 out[{col, row}] = float(std::max(sum / weights, 0.5 * mask.side_m));
             }
     });
+    // Shores and ponds that fill no half square.
+    const Grid<float> open = out;
+    for (int row = 0; row < out.size.rows; ++row)
+        for (int col = 0; col < out.size.cols; ++col) {
+            const float share = mask.wet_share[{col, row}];
+            if (mask.open[{col, row}] || !(share > 0.0f))
+                continue;
+            float beside = 0.0f;
+            for (int k = 0; k < 9; ++k) {
+                const Node n{col + k % 3 - 1, row + k / 3 - 1};
+                if (open.contains(n))
+                    beside = std::max(beside, open[n]);
+            }
+            out[{col, row}] = beside > 0.0f ? beside : float(mask.side_m) * std::sqrt(share);
+        }
     return out;
 }
 

@@ -149,7 +149,7 @@ std::vector<Cascade> lay_out(const Spectrum& spectrum, const Settings& settings)
         Cascade c;
         c.patch_m = patch_m;
         c.texels = n;
-        c.low_k = from_k;
+        c.low_k = std::max(from_k, 2.0 * pi / patch_m);    // no longer wave fits
         c.high_k = std::min(to_k, 0.5 * pi * n / patch_m); // four texels a wave
         out.push_back(c);
     };
@@ -161,8 +161,9 @@ std::vector<Cascade> lay_out(const Spectrum& spectrum, const Settings& settings)
         return out;
     }
     const double first_top = std::min(0.5 * pi * n / side, 1.15 * spectrum.peak_k());
-    add(side, low, first_top);
-    from = first_top;
+    if (first_top > std::max(low, 2.0 * pi / side) * 1.01)
+        add(side, low, first_top);
+    from = std::max(first_top, std::min(2.0 * pi / side, 0.5 * high));
     // Twelve waves a patch at least; what is then left at the short end counts as roughness.
     const double ratio = std::clamp(std::pow(high / from, 1.0 / (count - 1)), 1.5, n / 48.0);
     static const double out_of_step[] = {0.977, 0.941, 0.913};
@@ -194,7 +195,7 @@ double misfit(std::span<const PlaneWave> waves, double patch_m) {
 /// side by side and has eight texels for its shortest. Within that its side is the one that the
 /// waves' vectors fit best: one wave fits as it is.
 std::vector<Cascade> lay_out_list(const std::vector<PlaneWave>& list, const Settings& settings,
-                                  double depth_m, double& worst_misfit) {
+                                  double depth_m, double& worst_misfit, int& dropped) {
     std::vector<PlaneWave> waves = list;
     std::sort(waves.begin(), waves.end(),
               [](const PlaneWave& a, const PlaneWave& b) { return a.length_m > b.length_m; });
@@ -234,8 +235,10 @@ std::vector<Cascade> lay_out_list(const std::vector<PlaneWave>& list, const Sett
             const double k = 2.0 * pi / w.length_m;
             if (!last && w.length_m < shortest)
                 break;
-            if (k > c.high_k)
-                continue; // too short for the last patch
+            if (k > c.high_k) { // too short for the last patch
+                ++dropped;
+                continue;
+            }
             const double a = w.towards_deg * pi / 180.0;
             const int x = int(std::lround(k * std::sin(a) / dk)),
                       y = int(std::lround(k * std::cos(a) / dk));
@@ -344,7 +347,7 @@ void map_amplitudes(Sea& sea, const WaterMask& mask, const Grid<float>& fetch, d
     };
     for (std::size_t i = 0; i < size.count(); ++i)
         for (std::size_t j = 0; j < count; ++j) {
-            if (!mask.open.values[i])
+            if (!(fetch.values[i] > 0.0f))
                 continue;
             double a = share(fetch.values[i], j);
             if (sea.settings.model == Model::tma) { // Kitaigorodskii's factor where it is shallower
@@ -360,7 +363,9 @@ void map_amplitudes(Sea& sea, const WaterMask& mask, const Grid<float>& fetch, d
         }
     // Land takes its neighbours' greatest, ring by ring, so that a sample by the shore is not
     // drawn towards nothing: there the depth alone lets waves fade.
-    Grid<std::uint8_t> known = mask.open;
+    Grid<std::uint8_t> known(size);
+    for (std::size_t i = 0; i < size.count(); ++i)
+        known.values[i] = fetch.values[i] > 0.0f;
     for (int ring = 0; ring < 2; ++ring) {
         const Grid<std::uint8_t> before = known;
         for (int row = 0; row < size.rows; ++row)
@@ -393,13 +398,16 @@ void add_rain(Sea& sea) {
     c.high_k = 2.0 * pi / (1.5 * drop_radius_m);
     c.bound_m = 6.0 * rain.drop_height_m;
     c.moments.slope_along = c.moments.slope_across = 0.5 * rain_slope(rain);
-    const double k = 2.0 / drop_radius_m; // rms wavenumber of a drop
+    const double k = drop_k_per_m, turn = k * c.texel_m();
+    // Slopes are differences over two texels, which see less of waves so short.
+    const double differences = sinc(turn) * sinc(turn);
     c.moments.height = c.moments.slope() / (k * k);
     for (int level = 0; level < filter_levels; ++level)
         for (int j = 0; j < 16; ++j) { // all directions alike
             const double theta = (j + 0.5) * pi / 8.0;
             const glm::dvec2 v = k * glm::dvec2(std::cos(theta), std::sin(theta));
-            const double lost = c.moments.slope() / 16.0 * (1.0 - passed(v, c.texel_m(), level));
+            const double lost =
+                c.moments.slope() / 16.0 * (1.0 - differences * passed(v, c.texel_m(), level));
             SlopeCovariance& s = c.unresolved[std::size_t(level)];
             s.xx += lost * v.x * v.x / (k * k);
             s.xy += lost * v.x * v.y / (k * k);
@@ -452,7 +460,7 @@ SeaReport report_for(const WaterMask& mask, const Grid<float>& fetch, const Heig
         for (int col = 0; col < mask.open.size.cols; ++col) {
             const Node node{std::min(int((col + 0.5) * stride), ground.size().cols - 1),
                             std::min(int((row + 0.5) * stride), ground.size().rows - 1)};
-            if (mask.open[{col, row}] && node.col >= lake.west_north.col &&
+            if (fetch[{col, row}] > 0.0f && node.col >= lake.west_north.col &&
                 node.col <= lake.east_south.col && node.row >= lake.west_north.row &&
                 node.row <= lake.east_south.row &&
                 std::abs(water.elevation_m(node) - lake.level_m) < 0.01)
@@ -521,8 +529,13 @@ Sea make_sea(const Heightfield& ground, const Heightfield& water,
         }
         if (settings.model == Model::gerstner) {
             double off = 0.0;
+            int dropped = 0;
             sea.cascades = lay_out_list(windy ? pick_waves(spectrum, settings.seed) : settings.list,
-                                        settings, depth_m, off);
+                                        settings, depth_m, off, dropped);
+            if (dropped > 0 && !windy)
+                note(text(dropped,
+                          " waves of the list are shorter than four texels and left out: more "
+                          "--wave-cascades or --wave-texels would hold them"));
             if (off > 0.005 && !windy)
                 note(text("wave vectors of the list are drawn as the patches' lattices have them, ",
                           fixed(100.0 * off, 1), " % off (rms)"));
@@ -544,9 +557,11 @@ Sea make_sea(const Heightfield& ground, const Heightfield& water,
             double top = 0.0;
             for (const Cascade& c : sea.cascades)
                 top = std::max(top, c.high_k);
-            if (settings.model != Model::gerstner)
-                sea.roughness =
-                    covariance(spectrum.moments(top, spectrum.highest_k()), spectrum.towards());
+            if (settings.model ==
+                Model::gerstner) // picked from the bands below twelve times the peak
+                top = std::min(12.0 * spectrum.peak_k(), spectrum.highest_k());
+            sea.roughness =
+                covariance(spectrum.moments(top, spectrum.highest_k()), spectrum.towards());
             if (fetch.size.count() > 0)
                 map_amplitudes(sea, mask, fetch, most_fetch, depth_m);
         }
@@ -568,21 +583,25 @@ Sea make_sea(const Heightfield& ground, const Heightfield& water,
             sea.report.depth_m = depth_m;
         }
     }
-    double longest = 0.0, shortest = 1e9, choppiness = settings.choppiness, slowest = 1e9;
+    double longest = 0.0, shortest = 1e9, choppiness = settings.choppiness, slowest = 1e9,
+           drawn_variance = 0.0;
     std::size_t stuck = 0;
     for (const Cascade& c : sea.cascades) {
         longest = std::max(longest, 2.0 * pi / c.low_k);
         shortest = std::min(shortest, 2.0 * pi / c.high_k);
         choppiness = std::min(choppiness, c.choppiness);
         sea.report.drawn_slope += c.moments.slope();
+        drawn_variance += c.moments.height;
         for (std::size_t i = 0; i < c.turns.size(); ++i)
             stuck += c.turns[i] == 0 && (c.h0[i].x != 0.0f || c.h0[i].y != 0.0f);
         slowest = std::min(slowest, omega_per_s(c.low_k, depth_m));
     }
     if (stuck > 0)
-        note(text("the loop of ", settings.loop_s, " s is shorter than twice the period of ", stuck,
-                  " waves: those stand still; a loop of ", std::ceil(4.0 * pi / slowest),
-                  " s moves them all"));
+        note(slowest > 0.0
+                 ? text("the loop of ", settings.loop_s, " s is shorter than half the period of ",
+                        stuck, " waves: those stand still; a loop of ",
+                        std::ceil(2.0 * pi / slowest), " s moves them all")
+                 : std::string("the depth is 0: the waves stand still"));
     double sine_variance = 0.0, sine_slope = 0.0;
     for (const SineWave& w : sea.sines) {
         const double k = std::hypot(w.k_per_m.x, w.k_per_m.y);
@@ -596,6 +615,12 @@ Sea make_sea(const Heightfield& ground, const Heightfield& water,
         sea.report.mean_square_slope = sea.report.drawn_slope = sine_slope;
         sea.report.depth_m = depth_m;
     }
+    sea.report.drawn_height_m = 4.0 * std::sqrt(drawn_variance + sine_variance);
+    if (by_wind(settings) && sea.report.drawn_height_m < 0.7 * sea.report.significant_height_m)
+        note(text("the patches hold waves of ", fixed(sea.report.drawn_height_m, 3), " m of the ",
+                  fixed(sea.report.significant_height_m, 3),
+                  " m that the wind raises: larger or more "
+                  "of them would hold more"));
     sea.report.longest_m = longest;
     sea.report.shortest_m = shortest;
     sea.report.choppiness = sea.sines.empty() ? choppiness : 0.0;

@@ -63,6 +63,7 @@ struct SeaReport {
     double significant_height_m = 0.0, peak_period_s = 0.0, peak_length_m = 0.0;
     double mean_square_slope = 0.0;           ///< of all waves, drawn or counted as roughness
     double drawn_slope = 0.0;                 ///< of those drawn
+    double drawn_height_m = 0.0;              ///< significant height of those drawn
     double longest_m = 0.0, shortest_m = 0.0; ///< drawn
     double choppiness = 0.0;                  ///< smallest of the cascades', after the bound
     std::vector<std::string> notes;           ///< what had to be changed, and why

@@ -93,7 +93,7 @@ TEST(Waves, HeightsGrowAsPublished) {
                     1.0, 0.2);
         EXPECT_NEAR(waves::Spectrum(windy(Model::jonswap, wind), 1e6, 1e4).significant_height_m() /
                         grown,
-                    1.0, 0.3);
+                    1.0, 0.05);
     }
 }
 
@@ -191,6 +191,19 @@ TEST(Waves, APondStaysCalmInTheWindThatRoughensALake) {
     EXPECT_LT(4 * std::sqrt(pond_height), 0.25 * 4 * std::sqrt(lake_height));
     EXPECT_NEAR(4 * std::sqrt(lake_height), sea.report.significant_height_m,
                 0.05 * sea.report.significant_height_m);
+}
+
+TEST(Waves, PondsSmallerThanASquareOfTheFetchMapHaveTheirWaves) {
+    // 2049 nodes of 2 m: squares of 9; a pond of 6 x 6 nodes across a corner of four of them.
+    const scene::Scene scene =
+        lake(2049, 2.0, [](int c, int r) { return c >= 897 && c < 903 && r >= 897 && r < 903; });
+    const waves::WaterMask mask = waves::water_mask(scene.ground, scene.water);
+    EXPECT_GT(mask.side_m, 12.0);
+    const waves::Sea sea = sea_of(scene, windy(Model::jonswap, 8));
+    int most = 0;
+    for (const auto& shares : sea.amplitude.values)
+        most = std::max(most, int(shares[0]));
+    EXPECT_EQ(most, 255);
 }
 
 TEST(Waves, NoBandIsCountedTwiceAndNothingIsLost) {
@@ -294,6 +307,32 @@ TEST(Waves, ExtremesAreDrawnOrSaidToBeCalm) {
     EXPECT_FALSE(storm.report.notes.empty()); // choppiness held back
     for (const waves::Cascade& c : storm.cascades)
         EXPECT_LE(c.choppiness * 6.0 * std::sqrt(c.moments.slope()), 0.951);
+    const waves::Sea small = with([](auto& s) { s.patch_m = 0.5; });
+    EXPECT_LT(small.report.drawn_height_m, 0.2 * small.report.significant_height_m);
+    EXPECT_FALSE(small.report.notes.empty()); // says that the patch holds little
+    const waves::Sea list = with([](auto& s) {
+        s.model = Model::gerstner;
+        s.cascades = 1;
+        s.list = {{0.1, 10.0, 0.0, 0.0}, {0.01, 0.1, 0.0, 0.0}, {2.0, 6.0, 10.0, 0.0}};
+        s.choppiness = 2.0;
+    });
+    double steepness = 0.0;
+    for (const auto& w : list.settings.list)
+        if (w.length_m > 1.0)
+            steepness += 2 * M_PI / w.length_m * w.amplitude_m;
+    EXPECT_NEAR(list.cascades[0].choppiness, 0.98 / steepness, 0.05 * 0.98 / steepness);
+    EXPECT_NE(list.report.notes[0].find("left out"), std::string::npos);
+    // Rain is no denser than it is drawn.
+    const auto rain = [&](double rate) {
+        return with([&](auto& s) {
+                   s.model = Model::calm;
+                   s.ripples.rain_drops_per_m2_s = rate;
+               })
+            .cascades[0]
+            .moments.slope();
+    };
+    EXPECT_NEAR(rain(400) / rain(200), 2.0, 1e-9);
+    EXPECT_EQ(rain(1e4), rain(5e3));
     const waves::Sea frozen = with([](auto& s) { s.loop_s = 0.05; });
     ASSERT_EQ(frozen.report.notes.size(), 1u);
     EXPECT_NE(frozen.report.notes[0].find("stand still"), std::string::npos);

@@ -51,6 +51,7 @@ int meet_waves(sampler2D heights, sampler2DArray wave_heights, sampler2D amplitu
     vec2 cell = cell_at(span, span.t);
     float t = span.t, sink = ray.direction.z;
     float pace = length(span.d) * spacing; // metres along the ground a metre of path
+    int dry = 0;
     for (int steps = int(field.cells.x + field.cells.y) + 8; steps >= 0; --steps) {
         vec2 t_border = borders(span, cell);
         float t_out = max(t, min(min(t_border.x, t_border.y), span.t_end));
@@ -135,8 +136,10 @@ int meet_waves(sampler2D heights, sampler2DArray wave_heights, sampler2D amplitu
         t_left = t_out;
         if (t_out >= span.t_end)
             return met_nothing;
-        // Out of the slab: upwards in the air, downwards in the water.
-        if (side * sink > 0.0 && (!wet || side * over_level.below > lift))
+        // Out of the slab: upwards in the air, downwards in the water; or over land for good (a ray that comes to
+        // the slab at a border may be taken to be in the dry cell before it).
+        dry = wet ? 0 : dry + 1;
+        if (side * sink > 0.0 && (dry > 2 || (wet && side * over_level.below > lift)))
             return met_nothing;
         t = t_out;
         cell = beyond(span, cell, t_border);
