@@ -27,10 +27,15 @@ float wave_level(WaveBlock waves, int cascade, float footprint_m) {
 // What is left of a sine after a square filter: a Gaussian one of the same variance.
 float sine_share(vec2 k, float footprint_m) { return exp(-dot(k, k) * footprint_m * footprint_m / 24.0); }
 
+// 1, but 0 beside the one patch that is not repeated.
+float inside_patch(WaveBlock waves, int cascade, vec2 place) {
+    return cascade == int(waves.shore.y) && any(notEqual(floor(place), vec2(0.0))) ? 0.0 : 1.0;
+}
+
 // cascade_height — of one cascade at full amplitude [m], at a mip level.
 float cascade_height(sampler2DArray heights, WaveBlock waves, int cascade, vec2 at_m, float level) {
     vec2 place = waves.patches[cascade].xy + at_m / waves.patches[cascade].z;
-    return textureLod(heights, vec3(place, float(cascade)), level).x;
+    return inside_patch(waves, cascade, place) * textureLod(heights, vec3(place, float(cascade)), level).x;
 }
 
 // sine_height — of the sines together [m].
@@ -63,7 +68,7 @@ vec2 wave_slopes(sampler2DArray slopes, sampler2D table, WaveBlock waves, vec2 a
     for (int j = 0; j < TARN_CASCADES; ++j) {
         vec2 place = waves.patches[j].xy + at_m / waves.patches[j].z;
         float level = wave_level(waves, j, footprint_m), column = min(level, float(TARN_WAVE_LEVELS - 1));
-        sum += amplitude[j] * textureLod(slopes, vec3(place, float(j)), level).xy;
+        sum += inside_patch(waves, j, place) * amplitude[j] * textureLod(slopes, vec3(place, float(j)), level).xy;
         ivec2 low = ivec2(int(column), j);
         vec3 lost = mix(texelFetch(table, low, 0).xyz,
                         texelFetch(table, ivec2(min(low.x + 1, TARN_WAVE_LEVELS - 1), j), 0).xyz, fract(column));

@@ -33,7 +33,7 @@ using vec4 = glm::vec4;
 struct WaveBlock {
     vec4 patches[4]; // xy: place of the base in the patch [sides], z: side [m], w: side of a texel [m]
     vec4 counts;     // x: sines, y: bound on |height| of the sines [m], z: their greatest slope, w: lift of the water [m]
-    vec4 shore;      // x: depth of full amplitude [m], yzw: -
+    vec4 shore;      // x: depth of full amplitude [m], y: cascade that is not repeated, -1: none, zw: -
     vec4 map;        // xy: place of the base in the amplitude map [sides], zw: sides a metre east and south
     vec4 rough;      // xyz: covariance xx, xy, yy of slopes of waves that are not drawn, w: cascade whose share counts
 };

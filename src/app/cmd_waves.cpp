@@ -102,7 +102,7 @@ int run_waves(Words& words) {
     std::cout << "\n";
     for (const auto& lake : report.lakes)
         print_lake(lake);
-    if (!sea.still()) {
+    if (r.drawn_height_m > 0.0) {
         std::cout << "drawn: Hs " << fixed(r.drawn_height_m, 3)
                   << " m at the roughest place, waves of " << metres(r.longest_m) << " down to "
                   << metres(r.shortest_m) << ", mean square slope " << fixed(r.drawn_slope, 4)

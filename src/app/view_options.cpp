@@ -167,6 +167,11 @@ void add_wave_options(CLI::App& c, ViewWords& w) {
     c.add_option(
         "--rain", w.rain,
         "drops a second on a square metre: ripples (some 10 in drizzle, 200 in heavy rain)");
+    c.add_option(
+        "--poke", w.pokes,
+        "X,Y[,HEIGHT[,RADIUS[,TIME]]] of things that fall into the water [scene m, m, m, s], "
+        "with / between them; default .2 m high, .5 m wide, at 0 s; their rings are shown at "
+        "--wave-time");
     c.add_option("--wave-cascades", w.wave_cascades,
                  text("patches of different size, 1 to 4; default ", usual.cascades));
     c.add_option("--wave-texels", w.wave_texels,
@@ -248,6 +253,19 @@ void apply_settings_file(CLI::App& c, const ViewWords& w) {
     }
 }
 
+namespace {
+/// Parts with / between them.
+std::vector<std::string> split_list(const std::string& words) {
+    std::vector<std::string> out;
+    for (std::size_t from = 0; from <= words.size();) {
+        const std::size_t end = std::min(words.find('/', from), words.size());
+        out.push_back(words.substr(from, end - from));
+        from = end + 1;
+    }
+    return out;
+}
+} // namespace
+
 double convergence_deg(const scene::Scene& scene) {
     const ScenePoint p = geo::to_scene(scene.frame, scene.lakes.front().position);
     return convergence_at(scene, p.x_m, p.y_m);
@@ -285,19 +303,33 @@ waves::Settings make_waves(const ViewWords& w, const scene::Scene& scene) {
         s.shortest_m = w.shortest_wave;
     if (w.wave_patch)
         s.patch_m = w.wave_patch;
+    if (w.pokes) {
+        s.ripples.pokes.clear();
+        for (const std::string& one : split_list(*w.pokes)) {
+            const std::size_t numbers = 1 + std::size_t(std::count(one.begin(), one.end(), ','));
+            if (numbers < 2 || numbers > 5)
+                throw Error("--poke: '" + one + "' is not understood",
+                            "write X,Y or X,Y,HEIGHT,RADIUS,TIME");
+            const auto v = parse_numbers("--poke", one, numbers);
+            waves::Poke poke{.x_m = v[0], .y_m = v[1]};
+            if (numbers > 2)
+                poke.height_m = v[2];
+            if (numbers > 3)
+                poke.radius_m = v[3];
+            if (numbers > 4)
+                poke.time_s = v[4];
+            s.ripples.pokes.push_back(poke);
+        }
+    }
     if (w.wave_list) {
         s.list.clear();
-        std::size_t from = 0;
-        while (from <= w.wave_list->size()) {
-            const std::size_t end = std::min(w.wave_list->find('/', from), w.wave_list->size());
-            const std::string one = w.wave_list->substr(from, end - from);
+        for (const std::string& one : split_list(*w.wave_list)) {
             const std::size_t numbers = 1 + std::size_t(std::count(one.begin(), one.end(), ','));
             if (numbers != 3 && numbers != 4)
                 throw Error("--wave-list: '" + one + "' is not understood",
                             "write AMPLITUDE,LENGTH,TOWARDS or AMPLITUDE,LENGTH,TOWARDS,PHASE");
             const auto v = parse_numbers("--wave-list", one, numbers);
             s.list.push_back({v[0], v[1], v[2], numbers == 4 ? v[3] : 0.0});
-            from = end + 1;
         }
     }
     s.validate();

@@ -18,7 +18,7 @@ struct ViewWords {
     bool no_shadows = false, no_reflection = false, no_refraction = false, no_sun_disc = false;
     scene::RenderSettings settings;
     // Waves: what is not given is as the scene says.
-    std::optional<std::string> waves, wave_list, wind_rose;
+    std::optional<std::string> waves, wave_list, wind_rose, pokes;
     std::optional<double> wind, wind_from, wave_time, wave_loop, choppiness, spreading, fetch,
         wave_depth, shortest_wave, wave_patch, rain;
     std::optional<int> wave_cascades, wave_texels;

@@ -76,7 +76,7 @@ public:
             sea_ = waves::make_sea(scene.ground, scene.water, scene.lakes, settings);
             // Rain is no sum of waves: here it is roughness.
             for (const waves::Cascade& c : sea_.cascades)
-                if (c.ripples) {
+                if (c.ripples && !c.window) {
                     sea_.roughness.xx += c.moments.slope_along;
                     sea_.roughness.yy += c.moments.slope_across;
                 }

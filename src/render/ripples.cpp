@@ -61,7 +61,14 @@ void Ripples::poke(glm::dvec2 place, double height_m, double radius_m) {
                       float(height_m), float(std::max(radius_m / pond_.texel_m, 1.5)));
 }
 
+long long Ripples::step_of(const RipplePond::Dent& dent) const {
+    return static_cast<long long>(std::floor(std::clamp(dent.time_s / step_s_, -9e17, 9e17)));
+}
+
 void Ripples::step() {
+    for (const RipplePond::Dent& dent : pond_.dents)
+        if (step_of(dent) == number_)
+            poke(dent.place_m, dent.height_m, dent.radius_m);
     step_pass_.use();
     for (GLuint k = 0; k < 3; ++k)
         states_[k].bind_image(k, k < 2 ? GL_READ_ONLY : GL_WRITE_ONLY);
@@ -97,8 +104,17 @@ void Ripples::move_to(double time_s) {
     const double at = time_s / step_s_;
     const long long wanted = static_cast<long long>(std::clamp(std::ceil(at), -9e17, 9e17));
     since_ = std::clamp(1.0 - (double(wanted) - at), 0.0, 1.0);
-    if (!moved_ || wanted < number_ || wanted - number_ > memory_steps_)
-        rest(wanted - (pond_.drops_per_m2_s > 0.0 ? memory_steps_ : poke_ ? 1 : 0));
+    if (!moved_ || wanted < number_ || wanted - number_ > memory_steps_) {
+        long long start = wanted;
+        if (pond_.drops_per_m2_s > 0.0)
+            start = wanted - memory_steps_;
+        else if (poke_)
+            start = wanted - 1;
+        for (const RipplePond::Dent& dent : pond_.dents) // from before the first that still matters
+            if (step_of(dent) < wanted)
+                start = std::min(start, std::max(step_of(dent), wanted - memory_steps_));
+        rest(start);
+    }
     moved_ = true;
     while (number_ < wanted)
         step();

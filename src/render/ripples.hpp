@@ -23,6 +23,11 @@ struct RipplePond {
     double drop_height_m = 0.004;
     double drop_radius_m = 2.5 / 64.0;
     std::uint32_t seed = 1;
+    struct Dent {
+        glm::dvec2 place_m{0.0}; ///< from the corner of texel (0, 0)
+        double height_m = 0.0, radius_m = 0.0, time_s = 0.0;
+    };
+    std::vector<Dent> dents; ///< known beforehand: any time shows what they have become
     /// texels^2: 0 water, 1 land that reflects, 2 land that absorbs; empty: all water.
     std::vector<std::uint8_t> mask;
 };
@@ -51,6 +56,7 @@ public:
     long long steps() const { return steps_; } ///< taken in all, for tests of what time costs
 
 private:
+    long long step_of(const RipplePond::Dent& dent) const;
     void step();
     void rest(long long number);
 

@@ -95,6 +95,39 @@ void WaveField::upload_spectra() {
     bytes_ += texels * count * (20 + std::size_t(passes_.fields) * 16);
 }
 
+void WaveField::make_ripples() {
+    ripples_.clear();
+    for (const waves::Cascade& c : sea_.cascades) {
+        if (!c.ripples)
+            continue;
+        RipplePond pond;
+        pond.texels = c.texels;
+        pond.texel_m = c.texel_m();
+        pond.seed = sea_.settings.seed;
+        if (c.window) {
+            const std::vector<waves::Poke>& pokes = sea_.settings.ripples.pokes;
+            double radius = pokes.front().radius_m;
+            for (const waves::Poke& p : pokes) {
+                pond.dents.push_back(
+                    {glm::dvec2(p.x_m, p.y_m) - c.corner_m, p.height_m, p.radius_m, p.time_s});
+                radius = std::min(radius, p.radius_m);
+            }
+            // Rings are some four radii long and run as such waves do in deep water.
+            pond.speed_m_per_s = std::sqrt(waves::gravity_m_per_s2 * 4.0 * radius / (2.0 * pi));
+            pond.damping_per_s = 0.3;
+            pond.edge = RipplePond::Edge::absorbs;
+            pond.mask = c.mask;
+        } else {
+            pond.speed_m_per_s = waves::ripple_speed_m_per_s;
+            pond.damping_per_s = waves::ripple_damping_per_s;
+            pond.drops_per_m2_s = sea_.settings.ripples.rain_drops_per_m2_s;
+            pond.drop_height_m = sea_.settings.ripples.drop_height_m;
+            pond.drop_radius_m = waves::drop_radius_m;
+        }
+        ripples_.emplace_back(pond);
+    }
+}
+
 void WaveField::set(waves::Sea sea) {
     sea_ = std::move(sea);
     if (sea_.still())
@@ -113,18 +146,7 @@ void WaveField::set(waves::Sea sea) {
         slopes_ = gpu::TextureLayers(GL_RG16F, n, layers, "slopes of waves");
         bytes_ = std::size_t(n) * std::size_t(n) * std::size_t(layers) * 8 * 4 / 3;
         upload_spectra();
-        ripples_.reset();
-        if (spectral() < layers)
-            ripples_.emplace(RipplePond{.texels = n,
-                                        .texel_m = waves::ripple_texel_m,
-                                        .speed_m_per_s = waves::ripple_speed_m_per_s,
-                                        .damping_per_s = waves::ripple_damping_per_s,
-                                        .edge = RipplePond::Edge::wraps,
-                                        .drops_per_m2_s = sea_.settings.ripples.rain_drops_per_m2_s,
-                                        .drop_height_m = sea_.settings.ripples.drop_height_m,
-                                        .drop_radius_m = waves::drop_radius_m,
-                                        .seed = sea_.settings.seed,
-                                        .mask = {}});
+        make_ripples();
     }
     const GridSize map = sea_.amplitude.size;
     amplitude_ =
@@ -203,14 +225,20 @@ void WaveField::move_to(double time_s) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_WAVE_LIMITS, limits_.id());
     if (count > 0)
         transform_spectra(begins);
-    if (ripples_) {
+    if (!ripples_.empty()) {
         begins("ripples");
         const GLintptr own = GLintptr(count) * TARN_WAVE_LIMITS * GLintptr(sizeof(GLuint));
         glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-        glClearNamedBufferSubData(limits_.id(), GL_R32UI, own, TARN_WAVE_LIMITS * sizeof(GLuint),
+        glClearNamedBufferSubData(limits_.id(), GL_R32UI, own,
+                                  GLsizeiptr(ripples_.size() * TARN_WAVE_LIMITS * sizeof(GLuint)),
                                   GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
-        ripples_->move_to(time_s);
-        ripples_->write_layer(heights_, slopes_, count, sea_.cascades.back().bound_m);
+        int layer = count;
+        for (Ripples& ripples : ripples_) {
+            ripples.move_to(time_s);
+            ripples.write_layer(heights_, slopes_, layer,
+                                sea_.cascades[std::size_t(layer)].bound_m);
+            ++layer;
+        }
     }
     begins("levels");
     passes_.levels.use();
@@ -219,8 +247,8 @@ void WaveField::move_to(double time_s) {
     set_uniform(
         2, per_cascade(sea_.cascades, [](const waves::Cascade& c) { return 1.0 / c.texel_m(); }));
     // Those of a spectrum have their first levels already.
-    if (ripples_)
-        make_levels(0, count, 1);
+    if (!ripples_.empty())
+        make_levels(0, count, int(ripples_.size()));
     for (int source = surface_levels; source + 1 < heights_.levels(); source += 4)
         make_levels(source, 0, int(sea_.cascades.size()));
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
@@ -229,12 +257,16 @@ void WaveField::move_to(double time_s) {
 
 void WaveField::bind(glm::dvec2 base, double lift_m) {
     shared::WaveBlock block{};
+    double window = -1.0;
     for (std::size_t j = 0; j < sea_.cascades.size(); ++j) {
         const waves::Cascade& c = sea_.cascades[j];
         const double half = 0.5 / c.texels; // a texel's value belongs to its middle
-        block.patches[j] = {float(fraction(base.x / c.patch_m) + half),
-                            float(fraction(base.y / c.patch_m) + half), float(c.patch_m),
-                            float(c.texel_m())};
+        const glm::dvec2 place = (base - c.corner_m) / c.patch_m;
+        block.patches[j] = {float((c.window ? place.x : fraction(place.x)) + half),
+                            float((c.window ? place.y : fraction(place.y)) + half),
+                            float(c.patch_m), float(c.texel_m())};
+        if (c.window)
+            window = double(j);
     }
     double height = 0.0, slope = 0.0;
     const std::size_t columns = table_texels_.size() / table_rows;
@@ -251,7 +283,7 @@ void WaveField::bind(glm::dvec2 base, double lift_m) {
     if (!sea_.sines.empty())
         table_.upload(GL_RGBA, GL_FLOAT, table_texels_.data());
     block.counts = {float(sea_.sines.size()), float(height), float(slope), float(lift_m)};
-    block.shore = {float(std::max(sea_.full_depth_m, 1e-6)), 0, 0, 0};
+    block.shore = {float(std::max(sea_.full_depth_m, 1e-6)), float(window), 0, 0};
     const GridSize map = sea_.amplitude.size;
     const double wide = map.cols * sea_.amplitude_side_m, high = map.rows * sea_.amplitude_side_m;
     block.map = {float((base.x - sea_.amplitude_west_m) / wide),
@@ -292,7 +324,10 @@ double WaveField::height_at(glm::dvec2 place, double depth_m) const {
     for (std::size_t j = 0; j < sea_.cascades.size(); ++j) {
         const waves::Cascade& c = sea_.cascades[j];
         const int n = c.texels;
-        const double x = fraction(place.x / c.patch_m) * n, y = fraction(place.y / c.patch_m) * n;
+        const glm::dvec2 in = (place - c.corner_m) / c.patch_m;
+        if (c.window && (in.x < 0.0 || in.y < 0.0 || in.x >= 1.0 || in.y >= 1.0))
+            continue;
+        const double x = fraction(in.x) * n, y = fraction(in.y) * n;
         const int i = int(x) % n, k = int(y) % n;
         const double u = x - std::floor(x), v = y - std::floor(y);
         float corner[4];

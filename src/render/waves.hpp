@@ -35,9 +35,6 @@ public:
     /// @param lift_m    how much the walk's water is raised, >= sea().bound_m
     void bind(glm::dvec2 base, double lift_m);
 
-    /// The rain's ripples, where it rains.
-    Ripples* ripples() { return ripples_ ? &*ripples_ : nullptr; }
-
     /// Height above the level at a place of the scene, unfiltered, at the time of move_to(). Waits
     /// for the GPU.
     double height_at(glm::dvec2 place_m, double depth_m) const;
@@ -64,12 +61,13 @@ private:
 
     void build_passes();
     void upload_spectra();
+    void make_ripples();
     void transform_spectra(const std::function<void(const char*)>& begins);
     void make_levels(int source, int first_layer, int layers);
     int spectral() const; ///< cascades that come from a spectrum: the first ones
 
     waves::Sea sea_;
-    std::optional<Ripples> ripples_;
+    std::vector<Ripples> ripples_; ///< of the cascades after the spectral ones
     Passes passes_;
     gpu::Buffer h0_, turns_, fields_, twiddles_, block_, limits_;
     gpu::BufferTexture limits_texture_;

@@ -212,6 +212,14 @@ json wave_settings_json(const waves::Settings& s) {
                         {"towards_deg", w.towards_deg},
                         {"phase_rad", w.phase_rad}});
     out["list"] = list;
+    json pokes = json::array();
+    for (const waves::Poke& p : s.ripples.pokes)
+        pokes.push_back({{"x_m", p.x_m},
+                         {"y_m", p.y_m},
+                         {"height_m", p.height_m},
+                         {"radius_m", p.radius_m},
+                         {"time_s", p.time_s}});
+    out["pokes"] = pokes;
     return out;
 }
 
@@ -233,6 +241,13 @@ waves::Settings read_waves(const Field& f) {
     s.patch_m = f["patch_m"].number_or_null(0.5, 1e5);
     s.ripples.rain_drops_per_m2_s = f["rain_drops_per_m2_s"].number(0, 1e4);
     s.ripples.drop_height_m = f["drop_height_m"].number(0, 0.1);
+    const Field pokes = f["pokes"];
+    for (std::size_t i = 0, n = pokes.array_size(0, 16); i < n; ++i) {
+        const Field p = pokes.at(i);
+        s.ripples.pokes.push_back({p["x_m"].number(-1e8, 1e8), p["y_m"].number(-1e8, 1e8),
+                                   p["height_m"].number(-5, 5), p["radius_m"].number(0.05, 20),
+                                   p["time_s"].number(-1e10, 1e10)});
+    }
     const Field list = f["list"];
     for (std::size_t i = 0, n = list.array_size(0, 64); i < n; ++i) {
         const Field w = list.at(i);

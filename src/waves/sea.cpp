@@ -422,6 +422,52 @@ void add_rain(Sea& sea) {
     sea.cascades.push_back(std::move(c));
 }
 
+/// A square of water around what was poked, with the lake's own shores.
+void add_pokes(Sea& sea, const Heightfield& ground, const Heightfield& water) {
+    const std::vector<Poke>& pokes = sea.settings.ripples.pokes;
+    if (pokes.empty())
+        return;
+    Cascade c;
+    c.ripples = c.window = true;
+    c.texels = sea.settings.texels;
+    double radius = 1e9;
+    glm::dvec2 low(1e18), high(-1e18);
+    for (const Poke& p : pokes) {
+        radius = std::min(radius, p.radius_m);
+        low = {std::min(low.x, p.x_m), std::min(low.y, p.y_m)};
+        high = {std::max(high.x, p.x_m), std::max(high.y, p.y_m)};
+        c.bound_m += 2.0 * std::abs(p.height_m);
+    }
+    // Five texels for the smallest dent's radius: rings are resolved.
+    c.patch_m = c.texels * radius / 5.0;
+    c.corner_m = 0.5 * (low + high) - 0.5 * c.patch_m;
+    c.low_k = 2.0 * pi / c.patch_m;
+    c.high_k = 0.5 * pi / c.texel_m();
+    c.mask.assign(std::size_t(c.texels) * std::size_t(c.texels), 1);
+    for (int y = 0; y < c.texels; ++y)
+        for (int x = 0; x < c.texels; ++x) {
+            const glm::dvec2 at = c.corner_m + c.texel_m() * glm::dvec2(x, y);
+            const double col = water.col(at.x), row = water.row(at.y);
+            if (!(col >= 0.0 && row >= 0.0 && col <= water.size().cols - 1 &&
+                  row <= water.size().rows - 1))
+                continue;
+            const Node node{int(std::lround(col)), int(std::lround(row))};
+            if (water.codes[node] != no_water_code &&
+                ground.elevation_m(at.x, at.y) < water.elevation_m(node))
+                c.mask[std::size_t(y) * std::size_t(c.texels) + std::size_t(x)] = 0;
+        }
+    const bool outside = high.x - low.x > 0.8 * c.patch_m || high.y - low.y > 0.8 * c.patch_m;
+    if (outside)
+        sea.report.notes.push_back(text("the pokes lie farther apart than the ",
+                                        fixed(c.patch_m, 1),
+                                        " m of water that show their rings: some are left out"));
+    for (auto& shares : sea.amplitude.values)
+        shares[sea.cascades.size()] = 255;
+    sea.bound_m += c.bound_m;
+    sea.full_depth_m = std::max(sea.full_depth_m, sea.bound_m / 0.95);
+    sea.cascades.push_back(std::move(c));
+}
+
 double greatest(const Grid<float>& fetch) {
     float most = 0.0f;
     for (const float f : fetch.values)
@@ -488,6 +534,7 @@ Sea make_sea(const Heightfield& ground, const Heightfield& water,
     sea.amplitude_side_m = 1e9;
     if (settings.model == Model::calm) {
         add_rain(sea);
+        add_pokes(sea, ground, water);
         return sea;
     }
     const double depth_m = depth_of(lakes, settings);
@@ -524,6 +571,7 @@ Sea make_sea(const Heightfield& ground, const Heightfield& water,
                                           " m/s raises no wave longer than 3 cm here: drawn calm")
                                    : "the depth is 0: drawn calm");
                 add_rain(sea);
+                add_pokes(sea, ground, water);
                 return sea;
             }
         }
@@ -625,6 +673,7 @@ Sea make_sea(const Heightfield& ground, const Heightfield& water,
     sea.report.shortest_m = shortest;
     sea.report.choppiness = sea.sines.empty() ? choppiness : 0.0;
     add_rain(sea);
+    add_pokes(sea, ground, water);
     return sea;
 }
 

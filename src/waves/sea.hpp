@@ -38,7 +38,11 @@ struct Cascade {
     int texels = 512;     ///< a side
     double low_k = 0.0, high_k = 0.0;
     double choppiness = 0.0;
-    bool ripples = false;             ///< made by rain (waves/ripples.hpp), not by a spectrum
+    bool ripples = false; ///< made by rain (waves/ripples.hpp), not by a spectrum
+    /// Ripples of pokes: not repeated, its south-western corner lies here [scene m], ...
+    bool window = false;
+    glm::dvec2 corner_m{0.0};
+    std::vector<std::uint8_t> mask;   ///< ... and where its texels are land: 1
     Moments moments;                  ///< of the band, by the spectrum
     double bound_m = 0.0;             ///< heights are held within +- this: six standard deviations
     std::vector<glm::vec4> h0;        ///< texels^2: h0(k) and conj(h0(-k)); row = y, FFT order

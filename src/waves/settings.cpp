@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/text.hpp"
 
+#include <cmath>
 #include <tuple>
 
 namespace tarn::waves {
@@ -71,8 +72,18 @@ void Settings::validate() const {
     if (patch_m)
         require_range("patch [m]", *patch_m, 0.5, 1e5);
     require_range("rain [drops/(m2 s)]", ripples.rain_drops_per_m2_s, 0.0, 1e4);
-    if (ripples.rain_drops_per_m2_s > 0.0 && cascades > 3)
-        throw Error("waves: rain takes the place of a cascade, at most 3 beside it are drawn");
+    if (cascades + (ripples.rain_drops_per_m2_s > 0.0) + !ripples.pokes.empty() > 4)
+        throw Error(
+            "waves: rain and pokes take the place of a cascade each, four patches are drawn",
+            "use fewer --wave-cascades");
+    if (ripples.pokes.size() > 16)
+        throw Error(text("waves: ", ripples.pokes.size(), " pokes, at most 16 are drawn"));
+    for (const Poke& poke : ripples.pokes) {
+        require_range("place of a poke [m]", std::abs(poke.x_m) + std::abs(poke.y_m), 0.0, 1e8);
+        require_range("height of a poke [m]", poke.height_m, -5.0, 5.0);
+        require_range("radius of a poke [m]", poke.radius_m, 0.05, 20.0);
+        require_range("time of a poke [s]", poke.time_s, -1e10, 1e10);
+    }
     require_range("height of drops [m]", ripples.drop_height_m, 0.0, 0.1);
 }
 
@@ -86,7 +97,7 @@ bool operator==(const Settings& a, const Settings& b) {
                           s.depth_m, s.shortest_m, s.patch_m, s.ripples.rain_drops_per_m2_s,
                           s.ripples.drop_height_m);
     };
-    return flat(a) == flat(b);
+    return flat(a) == flat(b) && a.ripples.pokes == b.ripples.pokes;
 }
 
 } // namespace tarn::waves

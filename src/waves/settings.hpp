@@ -36,9 +36,19 @@ struct PlaneWave {
     double phase_rad = 0.0;
 };
 
+/// Something that falls into the water, or a finger that dips into it.
+struct Poke {
+    double x_m = 0.0, y_m = 0.0; ///< scene place
+    double height_m = 0.2;       ///< of the dent that it leaves, [-5, 5]
+    double radius_m = 0.5;       ///< [0.05, 20]
+    double time_s = 0.0;         ///< [-1e10, 1e10]
+    friend bool operator==(const Poke&, const Poke&) = default;
+};
+
 /// Rain and drops on a square of water that moves by the wave equation (waves/ripples.hpp).
 struct RippleSettings {
     double rain_drops_per_m2_s = 0.0; ///< [0, 1e4]; 0: no ripples
+    std::vector<Poke> pokes;          ///< at most 16, rings of all on one square of water
     double drop_height_m = 0.004;     ///< of the ring that a drop leaves, [0, 0.1]
 };
 
@@ -61,7 +71,10 @@ struct Settings {
     std::optional<double> patch_m;    ///< side of the first cascade, [0.5, 1e5]; none: by the waves
     RippleSettings ripples;
 
-    bool calm() const { return model == Model::calm && !(ripples.rain_drops_per_m2_s > 0.0); }
+    bool calm() const {
+        return model == Model::calm && !(ripples.rain_drops_per_m2_s > 0.0) &&
+               ripples.pokes.empty();
+    }
     /// @throws tarn::Error  naming the field, its value and the legal range
     void validate() const;
     friend bool operator==(const Settings&, const Settings&);

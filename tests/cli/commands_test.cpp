@@ -583,6 +583,10 @@ TEST(Waves, NumbersForPeopleAndPrograms) {
     expect_one_line("tarn waves " + scene + " --waves sines", 1, "needs a list");
     expect_one_line("tarn waves " + scene + " --wave-list 1,2", 1,
                     "--wave-list: '1,2' is not understood");
+    expect_one_line("tarn waves " + scene + " --poke 1", 1, "--poke: '1' is not understood");
+    expect_one_line("tarn waves " + scene + " --poke 0,0,99", 1, "height of a poke");
+    expect_one_line("tarn waves " + scene + " --poke 0,0 --rain 3 --wave-cascades 3", 1,
+                    "four patches");
     expect_one_line("tarn waves " + scene + " --wave-texels 100", 1, "must be 128");
     expect_one_line("tarn waves " + scene + " --wind-rose " + scene, 1, "cannot be read");
     expect_one_line("tarn waves " + scene + " --wind 3 --wind-rose " + (t / "rose.csv").string(), 1,
@@ -593,21 +597,25 @@ TEST(Waves, NumbersForPeopleAndPrograms) {
 TEST(Waves, AreKeptInTheSceneAndDrawnFromIt) {
     const TempFolder t;
     const std::string scene = (t / "windy").string();
-    ASSERT_EQ(run("tarn import " + shared().dem +
-                  " --level 10 --wind 5 --wind-from 90 --rain 20 -o " + scene)
-                  .code,
-              0);
+    ASSERT_EQ(
+        run("tarn import " + shared().dem +
+            " --level 10 --wind 5 --wind-from 90 --rain 20 --wave-cascades 2 --poke 0,0,0.3 -o " +
+            scene)
+            .code,
+        0);
     const scene::Scene kept = scene_files::load(scene);
     EXPECT_EQ(kept.waves.model, waves::Model::jonswap);
     EXPECT_EQ(kept.waves.wind_m_per_s, 5.0);
     EXPECT_NEAR(kept.waves.wind_from_deg, 90.0, 0.5); // grid north
     EXPECT_EQ(kept.waves.ripples.rain_drops_per_m2_s, 20.0);
+    ASSERT_EQ(kept.waves.ripples.pokes.size(), 1u);
+    EXPECT_EQ(kept.waves.ripples.pokes[0].height_m, 0.3);
     const std::string picture = " --size 64x48 --samples 1 --camera shore --wave-texels 128 -o ";
     ASSERT_EQ(run("tarn render " + scene + picture + (t / "a.exr").string()).code, 0);
-    ASSERT_EQ(
-        run("tarn render " + scene + " --waves calm --rain 0" + picture + (t / "b.exr").string())
-            .code,
-        0);
+    ASSERT_EQ(run("tarn render " + scene + " --waves calm --rain 0 --poke 0,0,0" + picture +
+                  (t / "b.exr").string())
+                  .code,
+              0);
     ASSERT_EQ(
         run("tarn render " + scene + " --wave-time 3" + picture + (t / "c.exr").string()).code, 0);
     ASSERT_EQ(

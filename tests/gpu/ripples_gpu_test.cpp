@@ -1,10 +1,13 @@
 // The wave equation of ripples against theory: speed, energy, shores, any time step, rain.
 #include "render/ripples.hpp"
+#include "render/waves.hpp"
+#include "scene/samples.hpp"
 #include "support/gpu_function.hpp"
 #include "waves/ripples.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 using namespace tarn;
@@ -182,4 +185,48 @@ TEST(RipplesGpu, RainsMeanSquareSlopeIsPredicted) {
     // The first instants, before half the energy is in motion, and rings of few texels: within a
     // fifth.
     EXPECT_NEAR(measured / waves::rain_slope(rain), 1.0, 0.2);
+}
+
+// Pokes of a scene: rings on one square of water around them, the same however their time is
+// reached, held by the lake's own shores.
+TEST(RipplesGpu, PokesShowTheirRingsAtAnyTimeAndStopAtTheShore) {
+    test_support::context();
+    const scene::Scene scene = scene::bowl(513); // water within 250 m of the middle
+    waves::Settings s;
+    s.texels = 128;
+    s.ripples.pokes = {{.x_m = 0.0, .y_m = 247.0, .height_m = 0.1, .radius_m = 0.5, .time_s = 2.0}};
+    const waves::Sea sea = waves::make_sea(scene.ground, scene.water, scene.lakes, s);
+    ASSERT_EQ(sea.cascades.size(), 1u);
+    const waves::Cascade& c = sea.cascades[0];
+    render::WaveField field, other;
+    field.set(sea);
+    other.set(sea);
+    const auto most = [&](double time) {
+        field.move_to(time);
+        float top = 0.0f;
+        for (const glm::vec3& v : field.read(0))
+            top = std::max(top, std::abs(v.x));
+        return top;
+    };
+    EXPECT_EQ(most(1.0), 0.0f);
+    EXPECT_GT(most(2.2), 0.01f);
+    EXPECT_GT(most(4.0), 0.003f);
+    for (double t = 0.0; t < 5.0; t += 0.13)
+        other.move_to(t);
+    other.move_to(5.0);
+    field.move_to(1.0);
+    field.move_to(5.0);
+    EXPECT_EQ(field.read(0), other.read(0));
+    // Nothing on land; waves on the water side.
+    int wet = 0;
+    const auto texels = field.read(0);
+    for (int y = 0; y < c.texels; ++y)
+        for (int x = 0; x < c.texels; ++x) {
+            const glm::dvec2 at = c.corner_m + c.texel_m() * glm::dvec2(x, y);
+            const float h = texels[std::size_t(y * c.texels + x)].x;
+            if (glm::length(at) > 252.0)
+                ASSERT_EQ(h, 0.0f) << x << " " << y;
+            wet += glm::length(at) < 248.0 && std::abs(h) > 1e-4f;
+        }
+    EXPECT_GT(wet, 100);
 }
