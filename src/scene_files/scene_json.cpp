@@ -249,7 +249,7 @@ waves::Settings read_waves(const Field& f) {
                                    p["time_s"].number(-1e10, 1e10)});
     }
     const Field list = f["list"];
-    for (std::size_t i = 0, n = list.array_size(0, 64); i < n; ++i) {
+    for (std::size_t i = 0, n = list.array_size(0, 4096); i < n; ++i) {
         const Field w = list.at(i);
         s.list.push_back({w["amplitude_m"].number(0, 50), w["length_m"].number(0.002, 1e4),
                           w["towards_deg"].number(-1e4, 1e4), w["phase_rad"].number(-1e6, 1e6)});

@@ -46,8 +46,11 @@ const char* name_of(Model model) {
 void Settings::validate() const {
     require_range("wind [m/s]", wind_m_per_s, 0.0, 100.0);
     require_range("wind direction [deg]", wind_from_deg, -1e4, 1e4);
-    if (list.size() > 64)
-        throw Error(text("waves: the list has ", list.size(), " waves, at most 64 are drawn"));
+    // Sines are summed at every place; trochoids once for a patch.
+    const std::size_t most = model == Model::sines ? 64 : 4096;
+    if (list.size() > most)
+        throw Error(
+            text("waves: the list has ", list.size(), " waves, at most ", most, " are drawn"));
     for (const PlaneWave& w : list) {
         require_range("amplitude [m]", w.amplitude_m, 0.0, 50.0);
         require_range("length [m]", w.length_m, 0.002, 1e4);

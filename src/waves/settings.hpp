@@ -57,7 +57,7 @@ struct Settings {
     Model model = Model::calm;
     double wind_m_per_s = 4.0;    ///< at 10 m, [0, 100]
     double wind_from_deg = 240.0; ///< clockwise from grid north
-    std::vector<PlaneWave> list;  ///< of `sines` and `gerstner`, at most 64
+    std::vector<PlaneWave> list;  ///< of `sines`, at most 64, and `gerstner`, at most 4096
     double time_s = 0.0;          ///< [-1e10, 1e10]
     double loop_s = 600.0;        ///< the water repeats itself after this, [0.01, 1e5]
     double choppiness = 1.0; ///< share of the horizontal displacement, [0, 2]; bounded: see Sea

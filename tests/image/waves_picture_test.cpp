@@ -94,18 +94,13 @@ TEST(WavePictures, APatchIsAsBrightResolvedAsItIsInOnePixel) {
                                 "%+.2f %% (+- %.2f)\n",
                                 choppiness, opposite ? "opposite" : "behind  ", elevation, speed,
                                 100 * (mean - 1), 100 * error);
-                    // Two per cent, where the slopes are normally distributed as the roughness is
-                    // taken to be, beside two standard errors of the patches themselves. Choppy
-                    // water has steeper crests and flatter troughs. Where the line of sight is no
-                    // steeper than the slopes
-                    // (.1 and .16 rms here), crests hide what is behind them, which even chances do
-                    // not say: a limit, with its figures in docs/waves.md.
+                    // Two per cent, beside two standard errors of the patches themselves. Where the
+                    // line of sight is no steeper than the slopes (.1 and .16 rms here), crests
+                    // hide what is behind them, which even chances do not say: a limit, with its
+                    // figures in docs/waves.md.
                     const double steepness =
                         std::tan(elevation * M_PI / 180.0) / (speed > 5 ? 0.16 : 0.1);
-                    const double allowed = steepness < 0.7    ? 0.12
-                                           : steepness < 1.5  ? 0.045
-                                           : choppiness > 0.0 ? 0.04
-                                                              : 0.02;
+                    const double allowed = steepness < 0.7 ? 0.12 : steepness < 1.5 ? 0.045 : 0.02;
                     EXPECT_LT(error, 0.02);
                     EXPECT_NEAR(mean, 1.0, allowed + 2 * error)
                         << choppiness << opposite << " " << elevation << " " << speed;
