@@ -54,12 +54,18 @@ double choose_exposure(const Words& words, const Image& picture, const scene::Sc
 
 std::string describe_waves(const waves::Settings& s) {
     std::string out = waves::name_of(s.model);
-    if (s.model == waves::Model::calm)
+    if (s.calm())
         return out;
     for (const waves::PlaneWave& w : s.list)
         out += text("; ", w.amplitude_m, ",", w.length_m, ",", w.towards_deg, ",", w.phase_rad);
-    return out + text("; wind ", s.wind_m_per_s, " m/s from ", s.wind_from_deg, " (grid); time ",
-                      s.time_s, " s of ", s.loop_s, "; seed ", s.seed);
+    if (s.model != waves::Model::calm)
+        out += text("; wind ", s.wind_m_per_s, " m/s from ", s.wind_from_deg, " (grid)");
+    out += text("; time ", s.time_s, " s of ", s.loop_s, "; seed ", s.seed);
+    if (s.ripples.rain_drops_per_m2_s > 0.0)
+        out += text("; rain ", s.ripples.rain_drops_per_m2_s, " drops/(m^2 s)");
+    for (const waves::Poke& p : s.ripples.pokes)
+        out += text("; poke ", p.x_m, ",", p.y_m, ",", p.height_m, ",", p.radius_m, ",", p.time_s);
+    return out;
 }
 
 image::Metadata describe(const scene::Scene& scene, const scene::View& view,

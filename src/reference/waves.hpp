@@ -9,7 +9,6 @@
 
 #include <functional>
 #include <glm/vec2.hpp>
-#include <optional>
 #include <vector>
 
 namespace tarn::reference {

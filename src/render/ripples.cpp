@@ -4,6 +4,7 @@
 #include "core/text.hpp"
 
 #include "shared/wave_block.h"
+#include "waves/ripples.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,15 +14,13 @@
 namespace tarn::render {
 
 namespace {
-constexpr double courant = 0.6; // travel in a step [texels]; the scheme is stable up to .71
-constexpr int cell_texels = 16; // as in passes/ripple_step.comp
 GLuint groups(int items, int of) { return static_cast<GLuint>((items + of - 1) / of); }
 } // namespace
 
 Ripples::Ripples(const RipplePond& pond)
-    : pond_(pond), step_s_(courant * pond.texel_m / pond.speed_m_per_s) {
-    if (pond.texels < cell_texels || pond.texels % cell_texels != 0 || !(pond.texel_m > 0.0) ||
-        !(pond.speed_m_per_s > 0.0) || !(pond.damping_per_s >= 0.0))
+    : pond_(pond), step_s_(waves::ripple_courant * pond.texel_m / pond.speed_m_per_s) {
+    if (pond.texels < waves::drop_cell_texels || pond.texels % waves::drop_cell_texels != 0 ||
+        !(pond.texel_m > 0.0) || !(pond.speed_m_per_s > 0.0) || !(pond.damping_per_s >= 0.0))
         throw Error(text("ripples: ", pond.texels, " texels of ", pond.texel_m, " m, speed ",
                          pond.speed_m_per_s, " m/s and damping ", pond.damping_per_s,
                          " /s make no pond"));
@@ -76,11 +75,11 @@ void Ripples::step() {
     glUniform1i(0, pond_.edge == RipplePond::Edge::wraps      ? 0
                    : pond_.edge == RipplePond::Edge::reflects ? 1
                                                               : 2);
-    glUniform1f(1, float(courant));
+    glUniform1f(1, float(waves::ripple_courant));
     glUniform1f(2, float(pond_.damping_per_s * step_s_));
     glUniform1ui(3, static_cast<GLuint>(static_cast<std::uint64_t>(number_)));
     glUniform1ui(4, pond_.seed);
-    const double cell_m = cell_texels * pond_.texel_m;
+    const double cell_m = waves::drop_cell_texels * pond_.texel_m;
     glUniform3f(5, float(std::min(1.0, pond_.drops_per_m2_s * cell_m * cell_m * step_s_)),
                 float(pond_.drop_height_m), float(pond_.drop_radius_m / pond_.texel_m));
     const glm::vec4 poke = poke_.value_or(glm::vec4(0.0f));

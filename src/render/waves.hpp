@@ -11,7 +11,6 @@
 #include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <optional>
 #include <string>
 
 namespace tarn::render {

@@ -66,10 +66,7 @@ void count_unresolved(Cascade& c, const Spectrum& spectrum) {
             const glm::dvec2 v = k * (std::cos(theta) * along + std::sin(theta) * across);
             for (int level = 0; level < filter_levels; ++level) {
                 const double lost = share * (1.0 - passed(v, c.texel_m(), level));
-                SlopeCovariance& s = c.unresolved[std::size_t(level)];
-                s.xx += lost * v.x * v.x;
-                s.xy += lost * v.x * v.y;
-                s.yy += lost * v.y * v.y;
+                c.unresolved[std::size_t(level)].add(lost, v);
             }
         }
     }
@@ -259,10 +256,7 @@ std::vector<Cascade> lay_out_list(const std::vector<PlaneWave>& list, const Sett
             const glm::dvec2 v = dk * glm::dvec2(x, y);
             for (int level = 0; level < filter_levels; ++level) {
                 const double lost = variance * (1.0 - passed(v, c.texel_m(), level));
-                SlopeCovariance& s = c.unresolved[std::size_t(level)];
-                s.xx += lost * v.x * v.x;
-                s.xy += lost * v.x * v.y;
-                s.yy += lost * v.y * v.y;
+                c.unresolved[std::size_t(level)].add(lost, v);
             }
         }
         if (c.moments.height > 0.0) {
@@ -408,10 +402,7 @@ void add_rain(Sea& sea) {
             const glm::dvec2 v = k * glm::dvec2(std::cos(theta), std::sin(theta));
             const double lost =
                 c.moments.slope() / 16.0 * (1.0 - differences * passed(v, c.texel_m(), level));
-            SlopeCovariance& s = c.unresolved[std::size_t(level)];
-            s.xx += lost * v.x * v.x / (k * k);
-            s.xy += lost * v.x * v.y / (k * k);
-            s.yy += lost * v.y * v.y / (k * k);
+            c.unresolved[std::size_t(level)].add(lost, v / k);
         }
     for (auto& shares : sea.amplitude.values)
         shares[sea.cascades.size()] = 255;

@@ -31,6 +31,11 @@ inline constexpr int filter_levels = 12; ///< mip levels of the largest cascade
 struct SlopeCovariance {
     double xx = 0.0, xy = 0.0, yy = 0.0;
     double trace() const { return xx + yy; }
+    void add(double share, glm::dvec2 slope) {
+        xx += share * slope.x * slope.x;
+        xy += share * slope.x * slope.y;
+        yy += share * slope.y * slope.y;
+    }
 };
 
 struct Cascade {
