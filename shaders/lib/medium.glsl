@@ -1,40 +1,40 @@
-// lib/medium.glsl — light inside the water body. Pure functions. C++ twin: src/reference/medium.hpp
-// Model and sources: docs/physics/water.md (quasi-single scattering, Gordon 1973).
+// lib/medium.glsl — light inside the water body. Pure functions; the table is a parameter.
+// C++ twin: src/reference/medium.hpp, which sums over wavelengths instead of looking the sum up
+// Model and sources: docs/physics/water.md (quasi-single scattering, Gordon 1973); the table: src/scene/water_colour.hpp
 
-// transmittance — fraction of radiance that survives a straight path (Beer-Lambert law).
+// water_row — a row of the water's table.
 //
-//   attenuation_per_m  a + b_b per channel [1/m], >= 0
-//   distance_m         path length [m], >= 0
-vec3 transmittance(vec3 attenuation_per_m, float distance_m) {
-    return exp(-attenuation_per_m * distance_m);
+//   table    RGBA32F, four rows over the length of a path
+//   scale    x: 1 / shortest path [1/m], y: texels per logarithm of path, z: greatest attenuation of any wavelength
+//            [1/m], w: last texel
+//   row      0 transmitted, 1 integral of what is scattered back, 2 what a metre scatters back, 3 thrown back
+//   path_m   >= 0
+vec3 water_row(sampler2D table, vec4 scale, int row, float path_m) {
+    float place = clamp(log(1.0 + path_m * scale.x) * scale.y, 0.0, scale.w - 0.01), low = floor(place);
+    return mix(texelFetch(table, ivec2(int(low), row), 0).rgb, texelFetch(table, ivec2(int(low) + 1, row), 0).rgb,
+               place - low);
 }
 
-// faded_length — integral over s from 0 to d of exp(-start - k s), for any sign of k.
-//
-//   Written so that neither k d -> 0 loses digits nor a growing exponential overflows: with k < 0
-//   the integral is taken from the far end.
-float faded_length(float start, float k_per_m, float d_m) {
-    float x = abs(k_per_m) * d_m;
-    float ratio = x < 1e-2 ? 1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0)))
-                           : (1.0 - exp(-x)) / x;
-    return d_m * ratio * exp(k_per_m < 0.0 ? x - start : -start);
-}
+// transmittance — what is left of white light after a path in the water.
+vec3 transmittance(sampler2D table, vec4 scale, float path_m) { return water_row(table, scale, 0, path_m); }
 
-// path_radiance — light scattered into a straight path by the water itself.
+// thrown_back — share of what a flat bed sends up diffusely that the surface sends back to it.
+vec3 thrown_back(sampler2D table, vec4 scale, float depth_m) { return water_row(table, scale, 3, depth_m); }
+
+// path_radiance — light scattered into a straight path by the water itself, per unit of the light's irradiance just
+//                 below the surface on a plane facing it.
 //
-//   backscattering_per_m  b_b, spread evenly over directions: b_b / 2 pi per steradian [1/m]
-//   attenuation_per_m     a + b_b [1/m]
-//   irradiance            of the downward light just below the surface, on a plane facing it
-//   slant                 path of that light per metre of depth: 1 / cosine, >= 1
-//   depth_m               depth where the path begins, at the eye [m], >= 0
-//   sink                  metres of depth gained per metre of path, in [-1, 1]
-//   distance_m            length of the path [m], not beyond the surface
-//   returns               radiance at the beginning of the path
-vec3 path_radiance(vec3 backscattering_per_m, vec3 attenuation_per_m, vec3 irradiance, float slant,
-                   float depth_m, float sink, float distance_m) {
-    vec3 start = attenuation_per_m * (slant * depth_m);
-    vec3 k = attenuation_per_m * (1.0 + slant * sink);
-    return backscattering_per_m * (1.0 / 6.28318530718) * irradiance *
-           vec3(faded_length(start.r, k.r, distance_m), faded_length(start.g, k.g, distance_m),
-                faded_length(start.b, k.b, distance_m));
+//   slant       path of that light per metre of depth: 1 / cosine, >= 1
+//   depth_m     depth where the path begins [m], >= 0
+//   sink        metres of depth gained per metre of path, in [-1, 1]
+//   before_m    path in the water from there to the eye [m]
+//   distance_m  length of the path [m], not beyond the surface
+// Accuracy 1e-3 of the exact value (tests/gpu/medium_gpu_test.cpp)
+vec3 path_radiance(sampler2D table, vec4 scale, float slant, float depth_m, float sink, float before_m, float distance_m) {
+    // All light that arrives has come a path that grows evenly along the ray: the integral is a difference.
+    float rate = 1.0 + slant * sink, start = slant * depth_m + before_m, gain = rate * distance_m;
+    if (abs(gain) * scale.z < 0.5) // Simpson's rule, where the difference would lose digits
+        return distance_m / 6.0 * (water_row(table, scale, 2, start) + 4.0 * water_row(table, scale, 2, start + 0.5 * gain) +
+                                   water_row(table, scale, 2, start + gain));
+    return (water_row(table, scale, 1, start + gain) - water_row(table, scale, 1, start)) / rate;
 }

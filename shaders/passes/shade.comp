@@ -12,6 +12,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
 layout(binding = TARN_TEXTURE_SKY) uniform sampler2D sky_table;
+layout(binding = TARN_TEXTURE_WATER) uniform sampler2D water;
 layout(binding = TARN_TEXTURE_ORTHO) uniform sampler2D ortho;
 layout(binding = TARN_TEXTURE_OVERLAY) uniform sampler2D overlay;
 layout(binding = TARN_IMAGE_RADIANCE, rgba32f) uniform image2D radiance_image;
@@ -24,10 +25,8 @@ layout(binding = TARN_IMAGE_SURFACE, rgba32ui) uniform readonly uimage2D surface
 #endif
 
 const float inverse_pi = 0.318309886184;
-// Mean slant of skylight in the water, refracted from an even sky, and what the surface lets in of it
-// (1 - .066): docs/physics/water.md.
+// Mean slant of skylight in the water, refracted from an even sky: docs/physics/water.md.
 const float sky_slant = 1.19;
-const float sky_entering = 0.934;
 // White in an aerial picture is no albedo of 1: pictures are exposed for mid grey.
 const float photo_albedo = 0.7;
 
@@ -50,8 +49,9 @@ vec3 sun_irradiance_below(vec3 below) {
 
 // Radiance that leaves the ground where a part ended: land in the air, bed under water.
 //
-//   path_m  length of the way from the camera, for the footprint of a pixel
-vec3 ground_radiance(Part part, End end, float path_m) {
+//   path_m   length of the way from the camera, for the footprint of a pixel
+//   water_m  as much of it as lies in the water: what is left there of the bed's light, is returned
+vec3 ground_radiance(Part part, End end, float path_m, float water_m) {
     float z = part.origin.z + end.t * part.direction.z;
     vec4 corners = textureGather(heights, (vec2(end.cell) + 1.0) * view.inverse_size.xy, 0) * view.heights.y;
     if (!part.in_water && z < bilinear(corners, end.inside) - view.options.x) {
@@ -79,35 +79,38 @@ vec3 ground_radiance(Part part, End end, float path_m) {
             }
         }
     }
-    vec3 attenuation = view.attenuation.rgb;
     vec3 towards = part.in_water ? sun_below(view.sun.xyz, view.attenuation.w) : view.sun.xyz;
     float depth = part.in_water ? max(part.level - z, 0.0) : 0.0;
     vec3 irradiance = (0.5 + 0.5 * normal.z) *
-                      (part.in_water ? view.sky_irradiance.rgb * sky_entering * transmittance(attenuation, sky_slant * depth)
+                      (part.in_water ? view.sky_irradiance.rgb * view.sky_irradiance.w *
+                                           transmittance(water, view.water, sky_slant * depth + water_m)
                                      : view.sky_irradiance.rgb);
     if ((end.flags & end_lit) != 0u || (!on(TARN_FLAG_SHADOWS) && view.sun.z > 0.0))
         irradiance += max(dot(normal, towards), 0.0) *
-                      (part.in_water ? sun_irradiance_below(towards) * transmittance(attenuation, depth / towards.z)
+                      (part.in_water ? sun_irradiance_below(towards) *
+                                           transmittance(water, view.water, depth / towards.z + water_m)
                                      : view.sun_irradiance.rgb);
+    if (part.in_water && on(TARN_FLAG_THROWN_BACK)) // what a bright bed gets back from the surface, again and again
+        irradiance /= 1.0 - albedo * clamp(thrown_back(water, view.water, depth), 0.0, 1.0);
     return albedo * inverse_pi * irradiance;
 }
 
-// Radiance that a part brings to where it began; `remaining` is what is left there of light from its end.
-vec3 part_radiance(Part part, End end, float before_m, out vec3 remaining) {
+// Radiance that a part brings to the eye, but for the split's factor and, in the air, the water before it.
+//
+//   before_m  length of the path before the part
+//   water_m   as much of it as lay in the water
+vec3 part_radiance(Part part, End end, float before_m, float water_m) {
     vec3 radiance = vec3(0.0);
-    remaining = vec3(1.0);
-    vec3 attenuation = view.attenuation.rgb;
     if (part.in_water) {
         float sink = -part.direction.z, depth = depth_of(part);
         vec3 below = sun_below(view.sun.xyz, view.attenuation.w);
-        radiance = path_radiance(view.backscattering.rgb, attenuation, sun_irradiance_below(below), 1.0 / below.z,
-                                 depth, sink, end.t) +
-                   path_radiance(view.backscattering.rgb, attenuation,
-                                 view.sky_irradiance.rgb * (sky_entering * sky_slant), sky_slant, depth, sink, end.t);
-        remaining = transmittance(attenuation, end.t);
+        radiance = sun_irradiance_below(below) *
+                       path_radiance(water, view.water, 1.0 / below.z, depth, sink, water_m, end.t) +
+                   view.sky_irradiance.rgb * (view.sky_irradiance.w * sky_slant) *
+                       path_radiance(water, view.water, sky_slant, depth, sink, water_m, end.t);
     }
     if ((end.flags & end_ground) != 0u)
-        radiance += remaining * ground_radiance(part, end, before_m + end.t);
+        radiance += ground_radiance(part, end, before_m + end.t, water_m + end.t);
     else if ((end.flags & (end_surface | end_overlay)) == 0u && !part.in_water)
         radiance += sky(part.direction);
     return radiance;
@@ -167,8 +170,9 @@ void main() {
     ivec2 pixel = local + view.tile.xy;
     Part first = camera_part(view, pixel);
     End first_end = unpack_end(imageLoad(hits[0], local));
-    vec3 remaining;
-    vec3 radiance = part_radiance(first, first_end, 0.0, remaining);
+    vec3 radiance = part_radiance(first, first_end, 0.0, 0.0);
+    float water_m = first.in_water ? first_end.t : 0.0;
+    vec3 remaining = first.in_water ? transmittance(water, view.water, water_m) : vec3(1.0); // of light from its end
     if ((first_end.flags & end_overlay) != 0u)
         radiance += remaining * texelFetch(overlay, pixel, 0).rgb;
     if ((first_end.flags & end_surface) != 0u) {
@@ -190,7 +194,6 @@ void main() {
             if (!wanted(view, part, number))
                 continue;
             End end = unpack_end(number == 1 ? imageLoad(hits[1], local) : imageLoad(hits[2], local));
-            vec3 ignored;
 #ifdef TARN_WAVES
             if (!first.in_water) {
                 if (number == 2) { // drawn by what facets let through
@@ -198,19 +201,20 @@ void main() {
                 } else {
                     // The sky's mean is known; where the ray met land instead, that takes the place of the
                     // sky in its direction.
-                    radiance += remaining * (glitter.sky + glitter.sun);
-                    if ((end.flags & end_ground) == 0u)
-                        continue;
-                    vec3 hidden = sky_radiance(sky_table, part.direction, view.sun.xyz);
-                    part.weight = met.bright / glitter.seen;
-                    radiance -= remaining * part.weight * hidden;
+                    vec3 mirrored = glitter.sky + glitter.sun;
+                    if ((end.flags & end_ground) != 0u) {
+                        vec3 hidden = sky_radiance(sky_table, part.direction, view.sun.xyz);
+                        mirrored += met.bright / glitter.seen * (part_radiance(part, end, first_end.t, 0.0) - hidden);
+                    }
+                    radiance += max(mirrored, vec3(0.0)); // a sample's land may hide more sky than its pixel has
+                    continue;
                 }
             }
 #endif
-            radiance += remaining * part.weight * part_radiance(part, end, first_end.t, ignored);
+            vec3 brought = part_radiance(part, end, first_end.t, water_m);
+            radiance += part.weight * (part.in_water ? brought : remaining * brought);
         }
     }
-    radiance = max(radiance, vec3(0.0)); // a sample's land may hide more sky than its pixel has in the mean
     radiance *= view.options.w;
     if (view.offset.z > 0.5)
         radiance += imageLoad(radiance_image, pixel).rgb;

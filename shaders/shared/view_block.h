@@ -25,6 +25,7 @@ using ivec4 = glm::ivec4;
 #define TARN_TEXTURE_ORTHO 3   // SRGB8_ALPHA8: orthophoto
 #define TARN_TEXTURE_OVERLAY 5 // RGBA32F: rasterised things: radiance, and distance [m] in alpha, 0 = none
 #define TARN_TEXTURE_SKY_SOFT 11 // RGBA16F (RGB32F on software GL): the same, quicker to look up, for sums
+#define TARN_TEXTURE_WATER 12  // RGBA32F: what water does to light by colour (lib/medium.glsl)
 #define TARN_TEXTURE_BEAMS 4   // R32F: free path of each tile of 8 x 8 pixels [m]
 #define TARN_IMAGE_RADIANCE 0  // rgba32f
 #define TARN_IMAGE_DISTANCE 1  // r32f
@@ -40,6 +41,7 @@ using ivec4 = glm::ivec4;
 #define TARN_FLAG_ORTHO 32u
 #define TARN_FLAG_UNDER_WATER 64u
 #define TARN_FLAG_OVERLAY 128u
+#define TARN_FLAG_THROWN_BACK 256u
 
 struct ViewBlock {
     vec4 camera;          // xyz: position from the node `base` (grid), w: angle of a pixel [rad]
@@ -51,9 +53,10 @@ struct ViewBlock {
                           // z: water offset [m], w: water [m per unit texel]
     vec4 sun;             // xyz: towards the sun, w: angular radius of its disc [rad]
     vec4 sun_irradiance;  // rgb: on a plane facing the sun, w: -
-    vec4 sky_irradiance;  // rgb: on a horizontal plane, w: -
-    vec4 attenuation;     // rgb: a + b_b [1/m], w: index of refraction
-    vec4 backscattering;  // rgb: b_b [1/m], w: greatest path in water [m]
+    vec4 sky_irradiance;  // rgb: on a horizontal plane, w: share that flat water lets in
+    vec4 attenuation;     // rgb: -, w: index of refraction
+    vec4 backscattering;  // rgb: -, w: greatest path in water [m]
+    vec4 water;           // of the water's table: lib/medium.glsl, water_row()
     vec4 look;            // x: tree line [m], y: snow line [m], z: lake level [m] (all above z = 0),
                           // w: uniform ground albedo, < 0 = the colour scheme
     vec4 ortho;           // xy: grid position of its north-west corner, zw: nodes per picture side
@@ -76,6 +79,6 @@ struct ViewBlock {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewBlock) == 384 && offsetof(ViewBlock, walk) == 368, "std140 layout");
+static_assert(sizeof(ViewBlock) == 400 && offsetof(ViewBlock, walk) == 384, "std140 layout");
 } // namespace tarn::shared
 #endif

@@ -14,6 +14,7 @@
 #include "geo/sun.hpp"
 #include "image/files.hpp"
 #include "scene/presets.hpp"
+#include "scene/water_types.hpp"
 #include "scene_files/scene_folder.hpp"
 #include "scene_files/scene_json.hpp"
 
@@ -27,7 +28,7 @@ namespace {
 
 struct Words {
     DemWords dem;
-    ViewWords waves; ///< only its waves are asked for
+    ViewWords waves; ///< only its waves and its water are asked for
     std::string level = "auto", lakes = "all", bathymetry, soundings, ortho, scene;
     std::string bathymetry_kind = "auto", bed = "auto";
 };
@@ -77,6 +78,8 @@ int run_import(Words& words) {
     scene.report.tarn_version = TARN_VERSION;
     const LakeRecord& lake = scene.lakes.front();
     scene.look = scene::ground_look(lake.position.lat_deg);
+    scene.optics = scene::water_type("clear lake");
+    scene.optics = make_water(words.waves, scene);
     const auto sun = sun_direction(scene, geo::default_time(lake.position));
     for (const std::string& name : scene::preset_names())
         scene.cameras.push_back({name, scene::preset_camera(scene, lake, name, sun, 16.0 / 9.0)});
@@ -153,6 +156,7 @@ void add_import(CLI::App& app, Run& run) {
         ->check(CLI::IsMember({"auto", "measured", "unknown"}))
         ->capture_default_str();
     c->add_option("--ortho", words->ortho, "aerial picture to drape over the land");
+    add_water_options(*c, words->waves);
     add_wave_options(*c, words->waves);
     c->add_option("--name", options.name, "name of the lake");
     c->footer(

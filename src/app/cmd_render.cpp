@@ -91,9 +91,12 @@ image::Metadata describe(const scene::Scene& scene, const scene::View& view,
         {"tarn:camera_place", text(fixed(eye.lat_deg, 6), ",", fixed(eye.lon_deg, 6), " at ",
                                    fixed(c.position.z, 2), " m")},
         {"tarn:sun_direction", triple(s)},
-        {"tarn:water",
-         text(scene.optics.name, "; a ", triple(scene.optics.absorption_per_m), " /m; b_b ",
-              triple(scene.optics.backscattering_per_m), " /m; n ", scene.optics.index)},
+        {"tarn:water", text(scene.optics.name, "; a ", triple(scene.optics.absorption_per_m),
+                            " /m; b_b ", triple(scene.optics.backscattering_per_m),
+                            " /m at 620, 545, 450 nm; n ", scene.optics.index,
+                            view.settings.spectral && !scene.optics.bands.empty()
+                                ? text("; ", scene.optics.bands.size(), " bands")
+                                : std::string("; three channels"))},
         {"tarn:waves", describe_waves(view.waves)},
         {"tarn:renderer", device},
         {"tarn:command", command_line()}};

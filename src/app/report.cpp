@@ -3,6 +3,7 @@
 #include "app/console.hpp"
 #include "core/text.hpp"
 #include "geo/frame.hpp"
+#include "scene/water_types.hpp"
 
 #include <algorithm>
 #include <ctime>
@@ -81,7 +82,11 @@ std::string full_report(const scene::Scene& scene) {
     out += text("frame       scene (0, 0) at ", fixed(origin.lat_deg, 6), ",",
                 fixed(origin.lon_deg, 6), "; ", scene.frame.proj, "\n");
     out += text("heights in  vertical datum: ", scene.frame.vertical_datum, "\n");
-    out += text("water       ", scene.optics.name, ", index ", scene.optics.index, "\n");
+    out += text("water       ", scene.optics.name, ", index ", scene.optics.index);
+    if (!scene.optics.bands.empty())
+        out += text(", a white disc disappears at ", fixed(scene::secchi_depth_m(scene.optics), 1),
+                    " m");
+    out += "\n";
     if (scene.ortho)
         out += text("picture     orthophoto ", scene.ortho->picture.width_px, " x ",
                     scene.ortho->picture.height_px, ", ", fixed(scene.ortho->spacing_m, 2),

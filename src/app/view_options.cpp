@@ -6,6 +6,7 @@
 #include "geo/frame.hpp"
 #include "geo/sun.hpp"
 #include "scene/presets.hpp"
+#include "scene/water_types.hpp"
 #include "waves/wind_rose.hpp"
 
 #include <CLI/CLI.hpp>
@@ -179,6 +180,57 @@ void add_wave_options(CLI::App& c, ViewWords& w) {
     c.add_option("--wave-seed", w.wave_seed, text("same seed, same sea; default ", usual.seed));
 }
 
+void add_water_options(CLI::App& c, ViewWords& w) {
+    c.add_option("--water", w.water, "type of the water; default: the scene's, else clear lake")
+        ->check(CLI::IsMember(scene::water_type_names()));
+    c.add_option("--secchi", w.secchi, "water by the depth where a white disc disappears [m]");
+    c.add_option("--chlorophyll", w.chlorophyll,
+                 "water by what is in it: phytoplankton [mg/m3 of chlorophyll]");
+    c.add_option("--cdom", w.cdom,
+                 "the same: absorption of dissolved organic matter at 440 nm [1/m]");
+    c.add_option("--turbidity", w.turbidity, "the same: suspended minerals [g/m3, about NTU]");
+    c.add_option(
+        "--water-table", w.water_table,
+        "water by a file with wavelength [nm], a, b [1/m] and, if known, b_b [1/m] a line");
+    c.add_option("--absorption-per-m", w.absorption,
+                 "R,G,B or one number: of the water [1/m], three channels (lab)");
+    c.add_option("--backscattering-per-m", w.backscattering,
+                 "R,G,B or one number: of the water [1/m], three channels (lab)");
+    c.add_option("--index", w.index, "of refraction of the water, [1, 3]");
+}
+
+scene::WaterOptics make_water(const ViewWords& w, const scene::Scene& scene) {
+    const bool made = w.chlorophyll || w.cdom || w.turbidity,
+               by_hand = !w.absorption.empty() || !w.backscattering.empty();
+    if (int(w.water.has_value()) + int(w.secchi.has_value()) + int(made) +
+            int(w.water_table.has_value()) + int(by_hand) >
+        1)
+        throw Error("--water, --secchi, --chlorophyll with --cdom and --turbidity, --water-table "
+                    "and --absorption-per-m with --backscattering-per-m exclude each other",
+                    "describe the water in one way");
+    scene::WaterOptics out = scene.optics;
+    if (w.water)
+        out = scene::water_type(*w.water);
+    else if (w.secchi)
+        out = scene::water_by_secchi(*w.secchi);
+    else if (made)
+        out = scene::lake_water(
+            {w.chlorophyll.value_or(0.0), w.cdom.value_or(0.0), w.turbidity.value_or(0.0)});
+    else if (w.water_table)
+        out = scene::read_water_table(*w.water_table);
+    else if (by_hand) {
+        out.name = "given by hand";
+        out.bands.clear();
+        if (!w.absorption.empty())
+            out.absorption_per_m = parse_triple("--absorption-per-m", w.absorption);
+        if (!w.backscattering.empty())
+            out.backscattering_per_m = parse_triple("--backscattering-per-m", w.backscattering);
+    }
+    out.index = w.index.value_or(scene.optics.index);
+    out.validate();
+    return out;
+}
+
 void add_view_options(CLI::App& c, ViewWords& w) {
     c.add_option(
          "--camera", w.camera,
@@ -199,10 +251,12 @@ void add_view_options(CLI::App& c, ViewWords& w) {
                  "R,G,B or one number: an even sky instead of the clear one (lab)");
     c.add_option("--ground-albedo", w.settings.ground_albedo,
                  "one grey in [0, 1] for all ground (lab)");
-    c.add_option("--absorption-per-m", w.absorption, "R,G,B or one number: of the water [1/m]");
-    c.add_option("--backscattering-per-m", w.backscattering,
-                 "R,G,B or one number: of the water [1/m]");
-    c.add_option("--index", w.index, "of refraction of the water, [1, 3]");
+    add_water_options(c, w);
+    c.add_option("--colour", w.colour, "of the water: by all wavelengths, or three narrow channels")
+        ->check(CLI::IsMember({"spectral", "rgb"}))
+        ->capture_default_str();
+    c.add_flag("--no-thrown-back", w.no_thrown_back,
+               "leave out what the surface throws back at the bed");
     std::vector<std::string> methods;
     for (const scene::WalkMethod& method : scene::walk_methods())
         methods.emplace_back(method.name);
@@ -357,15 +411,9 @@ scene::View make_view(const ViewWords& w, scene::Scene& scene) {
     view.settings.validate();
     view.waves = make_waves(w, scene);
 
-    if (!w.absorption.empty() || !w.backscattering.empty() || w.index)
-        scene.optics.name = "given by hand";
-    if (!w.absorption.empty())
-        scene.optics.absorption_per_m = parse_triple("--absorption-per-m", w.absorption);
-    if (!w.backscattering.empty())
-        scene.optics.backscattering_per_m =
-            parse_triple("--backscattering-per-m", w.backscattering);
-    scene.optics.index = w.index.value_or(scene.optics.index);
-    scene.optics.validate();
+    scene.optics = make_water(w, scene);
+    view.settings.spectral = w.colour == "spectral";
+    view.settings.thrown_back = !w.no_thrown_back;
 
     if (int(!w.time.empty()) + int(!w.sun.empty()) + int(!w.sun_direction.empty()) > 1)
         throw Error("--time, --sun and --sun-direction exclude each other");

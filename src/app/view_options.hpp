@@ -13,6 +13,10 @@ struct ViewWords {
     std::string camera = "overview", size = "1280x720";
     std::string time, sun, sun_direction, sun_irradiance, sky_radiance;
     std::string absorption, backscattering;
+    std::optional<std::string> water, water_table;
+    std::optional<double> secchi, chlorophyll, cdom, turbidity;
+    std::string colour = "spectral";
+    bool no_thrown_back = false;
     std::optional<double> index;
     std::string fresnel = "exact", intersection = "cone-map";
     bool no_shadows = false, no_reflection = false, no_refraction = false, no_sun_disc = false;
@@ -34,6 +38,13 @@ double convergence_deg(const scene::Scene& scene);
 
 /// Only those that choose the waves.
 void add_wave_options(CLI::App& command, ViewWords& words);
+
+/// Only those that choose the water.
+void add_water_options(CLI::App& command, ViewWords& words);
+
+/// The water that the words ask for, over what the scene says.
+/// @throws tarn::Error  naming the option and what is wrong
+scene::WaterOptics make_water(const ViewWords& words, const scene::Scene& scene);
 
 /// The waves that the words ask for, over what the scene says.
 /// @throws tarn::Error  naming the option and what is wrong

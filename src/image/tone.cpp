@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 
 namespace tarn::image {
 
@@ -10,6 +11,16 @@ double luminance(const glm::vec3& c) {
     return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
 } // BT.709
 } // namespace
+
+glm::vec3 into_gamut(glm::vec3 c) {
+    const float least = std::min({c.r, c.g, c.b});
+    if (least >= 0.0f)
+        return c;
+    const auto grey = static_cast<float>(luminance(c));
+    if (grey <= 0.0f)
+        return glm::vec3(0.0f);
+    return glm::max(glm::vec3(grey) + (c - grey) * (grey / (grey - least)), glm::vec3(0.0f));
+}
 
 double srgb_encode(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
@@ -34,10 +45,12 @@ double auto_exposure(const Image& image, double key, double least, double greate
 Picture encode_linear(const Image& image) {
     Picture out{
         .width_px = image.width_px, .height_px = image.height_px, .channels = 3, .bytes = {}};
-    for (const glm::vec3& c : image.radiance)
+    for (const glm::vec3& radiance : image.radiance) {
+        const glm::vec3 c = into_gamut(radiance);
         for (int k = 0; k < 3; ++k)
             out.bytes.push_back(static_cast<std::uint8_t>(
                 std::lround(255.0 * srgb_encode(std::clamp(double(c[k]), 0.0, 1.0)))));
+    }
     return out;
 }
 
@@ -60,8 +73,9 @@ Picture tone_map(const Image& image, double exposure) {
     for (std::size_t i = 0; i < image.radiance.size(); ++i) {
         const std::size_t x = i % std::size_t(image.width_px), y = i / std::size_t(image.width_px);
         const double dither = (bayer[(y % 4) * 4 + x % 4] + 0.5) / 16.0 - 0.5;
+        const glm::vec3 colour = into_gamut(image.radiance[i]);
         for (int k = 0; k < 3; ++k) {
-            const double v = std::max(0.0, double(image.radiance[i][k]) * exposure);
+            const double v = std::max(0.0, double(colour[k]) * exposure);
             const double powered = std::pow(v, contrast);
             const double curved = powered / (powered + half);
             const double place = std::sqrt(curved) * 4096.0; // the table is even in the square root

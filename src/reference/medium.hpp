@@ -1,43 +1,34 @@
 #pragma once
 /// @file medium.hpp  Double-precision twin of shaders/lib/medium.glsl.
 ///
-/// The path radiance is integrated NUMERICALLY (Gauss-Legendre, five points a panel) instead of by
-/// the shader's closed form.
-#include <algorithm>
-#include <cmath>
-#include <glm/exponential.hpp>
+/// Sums over wavelengths, each by its own exponential, where the shader looks the sum up.
+#include "scene/water_optics.hpp"
+
 #include <glm/vec3.hpp>
+#include <vector>
 
 namespace tarn::reference {
 
-/// Same contract as the GLSL function of the same name.
-inline glm::dvec3 transmittance(glm::dvec3 attenuation_per_m, double distance_m) {
-    return glm::exp(-attenuation_per_m * distance_m);
-}
+/// The water's wavelengths, or its three channels, with their shares of white light.
+class Medium {
+public:
+    Medium(const scene::WaterOptics& optics, bool spectral);
 
-/// Same contract as the GLSL function of the same name: what the water scatters at path length s
-/// comes from light weakened over the slant depth there, and is weakened on its way back.
-inline glm::dvec3 path_radiance(glm::dvec3 backscattering_per_m, glm::dvec3 attenuation_per_m,
-                                glm::dvec3 irradiance, double slant, double depth_m, double sink,
-                                double distance_m) {
-    static constexpr double place[5] = {-0.9061798459386640, -0.5384693101056831, 0.0,
-                                        0.5384693101056831, 0.9061798459386640};
-    static constexpr double weight[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889,
-                                         0.4786286704993665, 0.2369268850561891};
-    // Panels short against the steepest change.
-    const double steepest =
-        std::max({attenuation_per_m.x, attenuation_per_m.y, attenuation_per_m.z}) * (1.0 + slant);
-    const int panels = std::clamp(int(std::ceil(steepest * distance_m / 1.5)), 1, 20'000);
-    const double half = 0.5 * distance_m / panels;
-    glm::dvec3 sum(0.0);
-    for (int i = 0; i < panels; ++i)
-        for (int k = 0; k < 5; ++k) {
-            const double s = half * (2 * i + 1 + place[k]);
-            const double depth = depth_m + sink * s;
-            const glm::dvec3 there = irradiance * transmittance(attenuation_per_m, slant * depth);
-            sum += weight[k] * half * there * transmittance(attenuation_per_m, s);
-        }
-    return backscattering_per_m * sum / (2.0 * 3.14159265358979323846);
-}
+    /// Same contracts as the GLSL functions of the same names.
+    glm::dvec3 transmittance(double path_m) const;
+    glm::dvec3 path_radiance(double slant, double depth_m, double sink, double before_m,
+                             double distance_m) const;
+    glm::dvec3 thrown_back(double depth_m) const;
+    /// Share of an even sky that a flat surface lets in, by integrating over the angles in air.
+    double sky_entering() const { return sky_entering_; }
+
+private:
+    struct Wave {
+        glm::dvec3 weight;
+        double attenuation_per_m, backscattering_per_m;
+    };
+    std::vector<Wave> waves_;
+    double index_, sky_entering_;
+};
 
 } // namespace tarn::reference

@@ -24,9 +24,8 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Skylight in the water, as in docs/physics/water.md: mean slant after refraction of an even sky,
-// and one minus the diffuse reflectance of the surface from above.
-constexpr double sky_slant = 1.19, sky_entering = 0.934;
+// Skylight in the water, as in docs/physics/water.md: mean slant after refraction of an even sky.
+constexpr double sky_slant = 1.19;
 
 /// The water that a ray is in.
 struct Lake {
@@ -56,7 +55,7 @@ class Tracer {
 public:
     Tracer(const scene::Scene& scene, const scene::View& view)
         : scene_(scene), light_(view.lighting), settings_(view.settings), camera_(view.camera),
-          index_(scene.optics.index), attenuation_(scene.optics.attenuation_per_m()),
+          index_(scene.optics.index), medium_(scene.optics, view.settings.spectral),
           longest_path_m_(scene::greatest_path_m(scene.optics, view.settings)),
           lift_m_(scene::shadow_lift_m(scene.ground)),
           bottom_m_(scene::block_bottom_m(scene.ground)) {
@@ -102,7 +101,7 @@ public:
         const glm::dvec3 direction =
             pixel_direction(camera_.forward, camera_.right, camera_.up, half_tangent_, place);
         if (camera_lake_)
-            return in_water(camera_.position, direction, *camera_lake_, 0.0, &distance, lot);
+            return in_water(camera_.position, direction, *camera_lake_, 0.0, 0.0, &distance, lot);
         return in_air(camera_.position, direction, 0.0, &distance, lot);
     }
 
@@ -331,14 +330,15 @@ private:
         return colour * irradiance / pi;
     }
 
-    glm::dvec3 bed(const Hit& hit, double level, double footprint) const {
+    /// What is left of the bed's radiance after `water_m` of water.
+    glm::dvec3 bed(const Hit& hit, double level, double footprint, double water_m) const {
         double slope = 0.0;
         const glm::dvec3 normal = normal_at(hit, slope);
         const glm::dvec3 colour = albedo(hit, true, level, slope, footprint);
         const double depth = std::max(level - hit.point.z, 0.0);
-        glm::dvec3 irradiance = light_.sky_irradiance * sky_entering *
-                                transmittance(attenuation_, sky_slant * depth) * (1.0 + normal.z) /
-                                2.0;
+        glm::dvec3 irradiance = light_.sky_irradiance * medium_.sky_entering() *
+                                medium_.transmittance(sky_slant * depth + water_m) *
+                                (1.0 + normal.z) / 2.0;
         const double facing = glm::dot(normal, sun_below_);
         if (light_.sun_direction.z > 0.0 && facing > 0.0) {
             bool lit = true;
@@ -352,8 +352,10 @@ private:
             }
             if (lit)
                 irradiance += sun_irradiance_below_ * facing *
-                              transmittance(attenuation_, depth / sun_below_.z);
+                              medium_.transmittance(depth / sun_below_.z + water_m);
         }
+        if (settings_.thrown_back)
+            irradiance /= 1.0 - colour * medium_.thrown_back(depth);
         return colour * irradiance / pi;
     }
 
@@ -375,8 +377,8 @@ private:
         if (settings_.reflection)
             out += at.mirror * in_air(hit.point, at.reflected, before_m + hit.t, nullptr, {});
         if (settings_.refraction && at.mirror < 1.0)
-            out +=
-                at.through * in_water(hit.point, at.refracted, lake, before_m + hit.t, nullptr, {});
+            out += at.through *
+                   in_water(hit.point, at.refracted, lake, before_m + hit.t, 0.0, nullptr, {});
         return out;
     }
 
@@ -406,9 +408,9 @@ private:
         return Meeting{hit_at(hit->point, t + hit->t, false), 0.0, {0.0, 0.0}};
     }
 
-    /// The same under water.
+    /// The same under water, but as it arrives at the eye after `water_before_m` more of the water.
     glm::dvec3 in_water(glm::dvec3 origin, glm::dvec3 direction, const Lake& lake, double before_m,
-                        double* distance, std::optional<Lot> lot) const {
+                        double water_before_m, double* distance, std::optional<Lot> lot) const {
         const double depth = std::max(lake.level_m - origin.z, 0.0);
         double to_surface = direction.z > 1e-6 ? depth / direction.z : infinity;
         std::optional<Hit> hit;
@@ -432,16 +434,16 @@ private:
         if (distance)
             *distance = hit || at_surface ? length : infinity;
 
-        const glm::dvec3 bb = scene_.optics.backscattering_per_m;
         glm::dvec3 out =
-            path_radiance(bb, attenuation_, light_.sky_irradiance * sky_entering * sky_slant,
-                          sky_slant, depth, -direction.z, length);
+            light_.sky_irradiance * medium_.sky_entering() * sky_slant *
+            medium_.path_radiance(sky_slant, depth, -direction.z, water_before_m, length);
         if (light_.sun_direction.z > 0.0)
-            out += path_radiance(bb, attenuation_, sun_irradiance_below_, 1.0 / sun_below_.z, depth,
-                                 -direction.z, length);
-        const glm::dvec3 left = transmittance(attenuation_, length);
+            out +=
+                sun_irradiance_below_ * medium_.path_radiance(1.0 / sun_below_.z, depth,
+                                                              -direction.z, water_before_m, length);
+        const double water_m = water_before_m + length;
         if (hit)
-            return out + left * bed(*hit, lake.level_m, pixel_rad_ * (before_m + length));
+            return out + bed(*hit, lake.level_m, pixel_rad_ * (before_m + length), water_m);
         if (!at_surface || !lot)
             return out;
         glm::dvec3 top = origin + length * direction;
@@ -449,10 +451,11 @@ private:
             top.z = lake.level_m;
         const Split at = split(direction, surface, true, *lot);
         if (settings_.reflection)
-            out += left * at.mirror *
-                   in_water(top, at.reflected, lake, before_m + length, nullptr, {});
+            out += at.mirror *
+                   in_water(top, at.reflected, lake, before_m + length, water_m, nullptr, {});
         if (settings_.refraction && at.mirror < 1.0)
-            out += left * at.through * in_air(top, at.refracted, before_m + length, nullptr, {});
+            out += medium_.transmittance(water_m) * at.through *
+                   in_air(top, at.refracted, before_m + length, nullptr, {});
         return out;
     }
 
@@ -461,7 +464,7 @@ private:
     const scene::RenderSettings& settings_;
     const scene::Camera& camera_;
     double index_;
-    glm::dvec3 attenuation_;
+    Medium medium_;
     double longest_path_m_, lift_m_, bottom_m_;
     glm::dvec2 half_tangent_{0.0};
     double pixel_rad_ = 0.0;

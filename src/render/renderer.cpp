@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/text.hpp"
+#include "scene/water_colour.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -172,6 +173,28 @@ void Renderer::prepare_waves(const scene::View& view) {
     waves_->bind({ground.x_m(double(block_.base.x)), ground.y_m(double(block_.base.y))}, lift);
 }
 
+// The frame looks up what was summed over wavelengths here.
+void Renderer::upload_water(bool spectral) {
+    if (!water_spectral_ || *water_spectral_ != spectral) {
+        water_spectral_ = spectral;
+        const scene::WaterTable table = scene::make_water_table(scene_.optics, spectral);
+        std::vector<glm::vec4> texels;
+        for (const auto& row : table.rows)
+            for (const glm::vec3& value : row)
+                texels.emplace_back(value, 0.0f);
+        water_ = gpu::Texture2D(GL_RGBA32F, table.texels, int(table.rows.size()), 1,
+                                gpu::Filter::nearest, "water");
+        water_.upload(GL_RGBA, GL_FLOAT, texels.data());
+        sky_entering_ = table.sky_entering;
+        water_scale_ = {float(1.0 / table.shortest_m),
+                        float((table.texels - 1) / std::log1p(table.longest_m / table.shortest_m)),
+                        float(table.greatest_attenuation_per_m), float(table.texels - 1)};
+    }
+    block_.water = water_scale_;
+    block_.sky_irradiance.w = float(sky_entering_);
+    water_.bind(TARN_TEXTURE_WATER);
+}
+
 void Renderer::bind_walk(bool with_water) { bounds_.bind(walk_, with_water); }
 
 void Renderer::bind_field(scene::Walk walk, bool with_water) {
@@ -215,11 +238,11 @@ void Renderer::prepare(const scene::View& view) {
     const scene::Lighting& light = view.lighting;
     block_.sun = glm::vec4(glm::vec3(light.sun_direction), float(scene::sun_radius_rad));
     block_.sun_irradiance = glm::vec4(glm::vec3(light.sun_irradiance), 0.0f);
-    block_.sky_irradiance = glm::vec4(glm::vec3(light.sky_irradiance), 0.0f);
+    block_.sky_irradiance = glm::vec4(glm::vec3(light.sky_irradiance), 1.0f);
     const scene::WaterOptics& optics = scene_.optics;
-    block_.attenuation = glm::vec4(glm::vec3(optics.attenuation_per_m()), float(optics.index));
-    block_.backscattering = glm::vec4(glm::vec3(optics.backscattering_per_m),
-                                      float(scene::greatest_path_m(optics, settings)));
+    block_.attenuation = {0.0f, 0.0f, 0.0f, float(optics.index)};
+    block_.backscattering = {0.0f, 0.0f, 0.0f, float(scene::greatest_path_m(optics, settings))};
+    upload_water(settings.spectral);
     const double level = scene_.lakes.front().level_m;
     block_.look = {float(scene_.look.tree_line_m - ground.offset_m),
                    float(scene_.look.snow_line_m - ground.offset_m), float(level - ground.offset_m),
@@ -230,6 +253,7 @@ void Renderer::prepare(const scene::View& view) {
     flags |= settings.shadows ? TARN_FLAG_SHADOWS : 0u;
     flags |= settings.reflection ? TARN_FLAG_REFLECTION : 0u;
     flags |= settings.refraction ? TARN_FLAG_REFRACTION : 0u;
+    flags |= settings.thrown_back ? TARN_FLAG_THROWN_BACK : 0u;
     flags |= settings.fresnel == scene::Fresnel::schlick ? TARN_FLAG_SCHLICK : 0u;
     flags |= light.sun_disc ? TARN_FLAG_SUN_DISC : 0u;
     flags |= scene_.ortho ? TARN_FLAG_ORTHO : 0u;

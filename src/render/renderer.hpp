@@ -105,6 +105,7 @@ private:
     void use_walk(scene::Walk walk, double setting);
     std::string walk_file() const;
     void prepare_waves(const scene::View& view);
+    void upload_water(bool spectral);
     void bind_images();
     void locate_camera();
     bool under_water() const { return (block_.counts.z & TARN_FLAG_UNDER_WATER) != 0; }
@@ -127,6 +128,10 @@ private:
     std::map<scene::Walk, WalkPasses> passes_;
     std::map<std::pair<scene::Walk, std::string>, WavyPasses> wavy_passes_;
     std::optional<WaveField> waves_;
+    gpu::Texture2D water_;               ///< the water's table (scene/water_colour.hpp) ...
+    std::optional<bool> water_spectral_; ///< ... as it was made last
+    glm::vec4 water_scale_{0.0f};
+    double sky_entering_ = 1.0;
     gpu::Texture2D surfaces_; ///< of the water met, for the passes after the first; with waves only
     double top_m_ = 0.0, water_top_m_ = 0.0; ///< highest node, above z = 0; highest level
     glm::dvec3 camera_m_{0.0};

@@ -30,6 +30,20 @@ void validate_field(const char* name, const Heightfield& field) {
 } // namespace
 
 void WaterOptics::validate() const {
+    if (bands.size() == 1 || bands.size() > 1000)
+        throw Error(text("the water has ", bands.size(), " bands, must have none or 2 to 1000"));
+    double before = 0.0;
+    for (const WaterBand& band : bands) {
+        const std::string at = text(" at ", band.wavelength_nm, " nm");
+        require_range("wavelength_nm", band.wavelength_nm, 350.0, 800.0);
+        require_range(("absorption_per_m" + at).c_str(), band.absorption_per_m, 0.0, 100.0);
+        require_range(("scattering_per_m" + at).c_str(), band.scattering_per_m, 0.0, 1000.0);
+        require_range(("backscattering_per_m" + at).c_str(), band.backscattering_per_m, 0.0,
+                      std::min(band.scattering_per_m, 100.0));
+        if (!(band.wavelength_nm > before))
+            throw Error(text("the water's wavelengths must rise", at));
+        before = band.wavelength_nm;
+    }
     for (int k = 0; k < 3; ++k) {
         require_range("absorption_per_m", absorption_per_m[k], 0.0, 100.0);
         require_range("backscattering_per_m", backscattering_per_m[k], 0.0, 100.0);

@@ -68,7 +68,11 @@ double block_bottom_m(const Heightfield& ground) {
 
 double greatest_path_m(const WaterOptics& optics, const RenderSettings& settings) {
     const glm::dvec3 c = optics.attenuation_per_m();
-    const double least = std::min({c.x, c.y, c.z});
+    double least = std::min({c.x, c.y, c.z});
+    if (settings.spectral)
+        for (const WaterBand& band : optics.bands)
+            if (band.wavelength_nm >= 400.0 && band.wavelength_nm <= 700.0)
+                least = std::min(least, band.attenuation_per_m());
     return least > 1e-8 ? std::min(1e9, -std::log(settings.least_transmittance) / least) : 1e9;
 }
 

@@ -48,6 +48,8 @@ struct RenderSettings {
     bool shadows = true;
     bool reflection = true;
     bool refraction = true;
+    bool spectral = true;    ///< integrate over the water's bands; false: three narrow channels
+    bool thrown_back = true; ///< light that the surface sends back to the bed
     double least_transmittance = 0.002;  ///< underwater paths end where less is left, [1e-6, .5]
     std::optional<double> ground_albedo; ///< lab: one grey for all ground, [0, 1]
     Walk walk = Walk::cone_map;

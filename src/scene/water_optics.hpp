@@ -1,13 +1,24 @@
 #pragma once
 /// @file water_optics.hpp  What the water does to light, per colour channel.
 ///
-/// Channels are narrow bands at 620, 545 and 450 nm. Forward scattering, 97 % and more of all
-/// scattering in natural water, is counted as not scattered at all (quasi-single-scattering
-/// approximation, Gordon 1973): what weakens a ray is a + b_b.
+/// With `bands`, colour is integrated over wavelengths (scene/water_colour.hpp). Without, or where
+/// a picture asks for it, channels are narrow bands at 620, 545 and 450 nm. Forward scattering, 97
+/// % and more of all scattering in natural water, is counted as not scattered at all
+/// (quasi-single-scattering approximation, Gordon 1973): what weakens a ray is a + b_b.
 #include <glm/vec3.hpp>
 #include <string>
+#include <vector>
 
 namespace tarn::scene {
+
+/// What the water does at one wavelength.
+struct WaterBand {
+    double wavelength_nm = 0.0;
+    double absorption_per_m = 0.0;     ///< a, [0, 100]
+    double scattering_per_m = 0.0;     ///< b, [0, 1000]
+    double backscattering_per_m = 0.0; ///< b_b, part of b, [0, b]
+    double attenuation_per_m() const { return absorption_per_m + backscattering_per_m; }
+};
 
 struct WaterOptics {
     std::string name = "clear lake";
@@ -17,6 +28,9 @@ struct WaterOptics {
     /// Backscattering b_b [1/m], [0, 100]: fine mineral particles, almost white.
     glm::dvec3 backscattering_per_m{0.0060, 0.0065, 0.0070};
     double index = 1.333; ///< of refraction, [1, 3]
+    /// Ascending wavelengths in [350, 800] nm, 2 to 1000; empty: only the three channels above are
+    /// known. Between bands linear, beyond them as the last.
+    std::vector<WaterBand> bands;
 
     glm::dvec3 attenuation_per_m() const { return absorption_per_m + backscattering_per_m; }
 

@@ -188,6 +188,15 @@ void read_heights(const Field& f, const Field& grid, GridSize size, Heightfield&
     out.scale_m = f["scale_m"].number(1e-9, 1e4);
 }
 
+/// [wavelength nm, a, b, b_b] of each.
+json bands_json(const scene::WaterOptics& optics) {
+    json out = json::array();
+    for (const scene::WaterBand& band : optics.bands)
+        out.push_back({band.wavelength_nm, band.absorption_per_m, band.scattering_per_m,
+                       band.backscattering_per_m});
+    return out;
+}
+
 json wave_settings_json(const waves::Settings& s) {
     json out = {{"model", waves::name_of(s.model)},
                 {"wind_m_per_s", s.wind_m_per_s},
@@ -465,7 +474,8 @@ std::string to_json(const scene::Scene& scene, const FileNames& files) {
          {{"name", scene.optics.name},
           {"absorption_per_m", vector_of(scene.optics.absorption_per_m)},
           {"backscattering_per_m", vector_of(scene.optics.backscattering_per_m)},
-          {"index", scene.optics.index}}},
+          {"index", scene.optics.index},
+          {"bands", bands_json(scene.optics)}}},
         {"waves", wave_settings_json(scene.waves)},
         {"look",
          {{"tree_line_m", scene.look.tree_line_m}, {"snow_line_m", scene.look.snow_line_m}}},
@@ -520,6 +530,16 @@ scene::Scene from_json(const std::string& source, FileNames& files) {
     scene.optics.absorption_per_m = optics["absorption_per_m"].vector(0, 100);
     scene.optics.backscattering_per_m = optics["backscattering_per_m"].vector(0, 100);
     scene.optics.index = optics["index"].number(1, 3);
+    if (optics.has("bands")) { // folders of an earlier tarn have three channels only
+        const Field bands = optics["bands"];
+        for (std::size_t i = 0, n = bands.array_size(0, 1000); i < n; ++i) {
+            const Field band = bands.at(i);
+            band.array_size(4, 4);
+            const double b = band.at(2).number(0, 1000);
+            scene.optics.bands.push_back({band.at(0).number(350, 800), band.at(1).number(0, 100), b,
+                                          band.at(3).number(0, std::min(b, 100.0))});
+        }
+    }
     if (root.has("waves")) // folders of an earlier tarn are calm
         scene.waves = read_waves(root["waves"]);
     scene.look.tree_line_m = root["look"]["tree_line_m"].number(-1e5, 1e5);

@@ -12,9 +12,12 @@
 #include "render/renderer.hpp"
 #include "scene/presets.hpp"
 #include "scene/samples.hpp"
+#include "scene/water_types.hpp"
 #include "support/field_tracer.hpp"
 #include "support/files.hpp"
 
+#include <algorithm>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <gtest/gtest.h>
@@ -75,6 +78,42 @@ void expect_same_presets(const scene::Scene& scene, const std::string& name,
 TEST(Picture, MountainLakeAboveAndBelow) {
     expect_same_presets(scene::mountain_lake(401), "mountain lake",
                         {"overview", "shore", "top", "dive"});
+}
+
+// Water by its wavelengths, from crystal to mud and brown: the frame's one look-up against sums
+// over 120 wavelengths at every pixel.
+TEST(Picture, WatersByTheirWavelengths) {
+    scene::Scene scene = scene::mountain_lake(257);
+    for (const char* name : {"jerlov I", "clear lake", "humic lake", "glacial lake"}) {
+        scene.optics = scene::water_type(name);
+        for (const char* preset : {"shore", "dive"}) {
+            scene::View view;
+            view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.5, 0.4, 0.6)));
+            view.settings = {.width_px = 240, .height_px = 160, .samples = 1};
+            view.camera = scene::preset_camera(scene, scene.lakes[0], preset,
+                                               view.lighting.sun_direction, 1.5);
+            test_support::context();
+            const Image expected = reference::trace(scene, view, {});
+            const Image got = render::Renderer(scene).draw(view);
+            // A channel outside the gamut crosses zero, where nothing is relative to it: the worst
+            // channel counts, relative to the pixel's brightest one.
+            std::vector<double> errors;
+            double mean = 0.0;
+            for (std::size_t i = 0; i < got.radiance.size(); ++i) {
+                const glm::vec3 off = glm::abs(got.radiance[i] - expected.radiance[i]);
+                const glm::vec3 size = glm::abs(expected.radiance[i]);
+                errors.push_back(std::max({off.r, off.g, off.b}) /
+                                 std::max({size.r, size.g, size.b, 1e-9f}));
+                mean += errors.back() / double(got.radiance.size());
+            }
+            std::sort(errors.begin(), errors.end());
+            const double p99 = errors[errors.size() * 99 / 100];
+            EXPECT_LE(mean, 0.002) << name << " " << preset;
+            EXPECT_LE(p99, 0.01) << name << " " << preset;
+            std::printf("%-14s %-6s mean %.4f %%, 99th %.4f %%\n", name, preset, 100 * mean,
+                        100 * p99);
+        }
+    }
 }
 
 TEST(Picture, BowlAboveAndBelow) {
@@ -165,6 +204,9 @@ TEST(Picture, TheTankHasItsExactRadiancesOnTheGpuToo) {
     view.lighting = scene::uniform_sky({1, 0, 1}, glm::dvec3(M_PI), glm::dvec3(0));
     view.settings = {.width_px = 9, .height_px = 9, .samples = 1, .ground_albedo = 0.5};
     view.camera = scene::look({0, 0, -4}, 0, -90, 1.0);
+    // What the surface throws back lifts a bed of albedo .5 by 1 / (1 - .5 .475).
+    EXPECT_NEAR(renderer.draw(view).radiance[40].g, .3437 / (1 - .5 * .475), 4e-4);
+    view.settings.thrown_back = false;
     EXPECT_NEAR(renderer.draw(view).radiance[40].g, .3437, 5e-5);
     view.camera = scene::look({0, 0, 20}, 0, -90, 1.0);
     EXPECT_NEAR(renderer.draw(view).radiance[40].g, .1895, 5e-5);
@@ -235,20 +277,17 @@ TEST(Picture, APoleHalfInTheWaterMixesWithLandAndWaterByDepth) {
                 glm::dvec3 radiance(red);
                 if (from_below) {
                     const auto& optics = scene.optics;
-                    const glm::dvec3 attenuation = optics.attenuation_per_m();
+                    const reference::Medium medium(optics, true);
                     const glm::dvec3 sun = view.lighting.sun_direction,
                                      under = reference::sun_below(sun, optics.index);
                     const double share =
                         reference::sun_share_below(sun, under, optics.index, false);
                     const double depth = 10 - view.camera.position.z;
-                    radiance =
-                        radiance * reference::transmittance(attenuation, t) +
-                        reference::path_radiance(optics.backscattering_per_m, attenuation,
-                                                 view.lighting.sun_irradiance * share, 1 / under.z,
-                                                 depth, -d.z, t) +
-                        reference::path_radiance(optics.backscattering_per_m, attenuation,
-                                                 view.lighting.sky_irradiance * (0.934 * 1.19),
-                                                 1.19, depth, -d.z, t);
+                    radiance = radiance * medium.transmittance(t) +
+                               view.lighting.sun_irradiance * share *
+                                   medium.path_radiance(1 / under.z, depth, -d.z, 0.0, t) +
+                               view.lighting.sky_irradiance * (medium.sky_entering() * 1.19) *
+                                   medium.path_radiance(1.19, depth, -d.z, 0.0, t);
                 }
                 expected.radiance[std::size_t(i)] = glm::vec3(radiance);
                 expected.distance_m[std::size_t(i)] = float(t);

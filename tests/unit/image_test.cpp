@@ -7,6 +7,7 @@
 #include "support/files.hpp"
 
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <limits>
 
@@ -78,6 +79,17 @@ TEST(Tone, MidGreyStaysAndBlackAndWhiteAreEnds) {
         EXPECT_GE(sum, last);
         last = sum;
     }
+}
+
+TEST(Tone, ColoursOutsideTheGamutKeepTheirLuminance) {
+    const glm::vec3 luminance(0.2126f, 0.7152f, 0.0722f);
+    for (const glm::vec3 c : {glm::vec3(-0.1f, 0.4f, 0.5f), glm::vec3(0.3f, -0.02f, -0.05f)}) {
+        const glm::vec3 in = into_gamut(c);
+        EXPECT_NEAR(glm::dot(in, luminance), glm::dot(c, luminance), 1e-6);
+        EXPECT_NEAR(std::min({in.r, in.g, in.b}), 0.0f, 1e-6);
+    }
+    EXPECT_EQ(into_gamut({0.1f, 0.2f, 9.0f}), glm::vec3(0.1f, 0.2f, 9.0f));
+    EXPECT_EQ(into_gamut({-1.0f, 0.0f, 0.0f}), glm::vec3(0.0f));
 }
 
 TEST(Tone, AutomaticExposureBringsTheMiddleToTheKey) {

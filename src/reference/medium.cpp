@@ -1,0 +1,89 @@
+#include "reference/medium.hpp"
+
+#include "reference/fresnel.hpp"
+#include "scene/water_colour.hpp"
+#include "scene/water_types.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tarn::reference {
+
+namespace {
+constexpr double pi = 3.14159265358979323846;
+} // namespace
+
+Medium::Medium(const scene::WaterOptics& optics, bool spectral) : index_(optics.index) {
+    if (spectral && !optics.bands.empty()) {
+        glm::dvec3 sum(0.0);
+        for (double nm = 401.25; nm < 700.0; nm += 2.5) { // midpoints
+            const scene::WaterBand band = scene::band_at(optics.bands, nm);
+            const glm::dvec3 weight = scene::sunlight_colour(nm);
+            waves_.push_back({weight, band.attenuation_per_m(), band.backscattering_per_m});
+            sum += weight;
+        }
+        for (Wave& wave : waves_)
+            wave.weight /= sum;
+    } else {
+        for (int c = 0; c < 3; ++c) {
+            glm::dvec3 weight(0.0);
+            weight[c] = 1.0;
+            waves_.push_back(
+                {weight, optics.attenuation_per_m()[c], optics.backscattering_per_m[c]});
+        }
+    }
+    double mirrored = 0.0;
+    constexpr int steps = 4000;
+    for (int i = 0; i < steps; ++i) {
+        const double cosine = (i + 0.5) / steps;
+        mirrored += 2.0 * cosine * fresnel_dielectric(cosine, 1.0 / index_) / steps;
+    }
+    sky_entering_ = 1.0 - mirrored;
+}
+
+glm::dvec3 Medium::transmittance(double path_m) const {
+    glm::dvec3 sum(0.0);
+    for (const Wave& wave : waves_)
+        sum += wave.weight * std::exp(-wave.attenuation_per_m * path_m);
+    return sum;
+}
+
+glm::dvec3 Medium::path_radiance(double slant, double depth_m, double sink, double before_m,
+                                 double distance_m) const {
+    glm::dvec3 sum(0.0);
+    // From the end where the light has come the shorter way, so that nothing overflows.
+    const double gain = (1.0 + slant * sink) * distance_m;
+    const double shortest = slant * depth_m + before_m + std::min(gain, 0.0);
+    for (const Wave& wave : waves_) {
+        const double x = wave.attenuation_per_m * std::abs(gain);
+        const double mean = std::abs(x) < 1e-9 ? 1.0 : -std::expm1(-x) / x;
+        sum += wave.weight * (wave.backscattering_per_m / (2.0 * pi) * distance_m * mean *
+                              std::exp(-wave.attenuation_per_m * shortest));
+    }
+    return sum;
+}
+
+// By angles, with the substitution that crowds the points where the critical angle's kink is.
+glm::dvec3 Medium::thrown_back(double depth_m) const {
+    glm::dvec3 sum(0.0);
+    const double critical = std::asin(std::min(1.0, 1.0 / index_));
+    constexpr int steps = 24;
+    for (int part = 0; part < 2; ++part)
+        for (int i = 0; i < steps; ++i) {
+            const double t = (i + 0.5) / steps;
+            const double angle =
+                part == 0 ? critical * (1.0 - t * t) : critical + (0.5 * pi - critical) * t;
+            const double width = (part == 0 ? 2.0 * t * critical : 0.5 * pi - critical) / steps;
+            const double cosine = std::cos(angle);
+            const double share = 2.0 * cosine * std::sin(angle) * width *
+                                 (part == 0 ? fresnel_dielectric(cosine, index_) : 1.0);
+            for (const Wave& wave : waves_) {
+                const double tau = wave.attenuation_per_m * depth_m;
+                if (tau < 20.0)
+                    sum += wave.weight * (share * std::exp(-2.0 * tau / cosine));
+            }
+        }
+    return sum;
+}
+
+} // namespace tarn::reference
