@@ -4,10 +4,11 @@
 
 // water_row — a row of the water's table.
 //
-//   table    RGBA32F, four rows over the length of a path
+//   table    RGBA32F, five rows over the length of a path
 //   scale    x: 1 / shortest path [1/m], y: texels per logarithm of path, z: greatest attenuation of any wavelength
 //            [1/m], w: last texel
-//   row      0 transmitted, 1 integral of what is scattered back, 2 what a metre scatters back, 3 thrown back
+//   row      0 transmitted, 1 integral of what is scattered back, 2 what a metre scatters back, 3 thrown back,
+//            4 not scattered at all
 //   path_m   >= 0
 vec3 water_row(sampler2D table, vec4 scale, int row, float path_m) {
     float place = clamp(log(1.0 + path_m * scale.x) * scale.y, 0.0, scale.w - 0.01), low = floor(place);
@@ -20,6 +21,9 @@ vec3 transmittance(sampler2D table, vec4 scale, float path_m) { return water_row
 
 // thrown_back — share of what a flat bed sends up diffusely that the surface sends back to it.
 vec3 thrown_back(sampler2D table, vec4 scale, float depth_m) { return water_row(table, scale, 3, depth_m); }
+
+// image_transmittance — of that, what has not been scattered at all, and still draws the edges of things.
+vec3 image_transmittance(sampler2D table, vec4 scale, float path_m) { return water_row(table, scale, 4, path_m); }
 
 // path_radiance — light scattered into a straight path by the water itself, per unit of the light's irradiance just
 //                 below the surface on a plane facing it.

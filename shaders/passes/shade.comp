@@ -95,20 +95,38 @@ vec3 ground_radiance(Part part, End end, float path_m, float water_m) {
     return albedo * inverse_pi * irradiance;
 }
 
+// Radiance that the water itself scatters towards the eye along a part, between two places of it.
+//
+//   water_m  path in the water before the part
+vec3 scattered_radiance(Part part, float from_m, float to_m, float water_m) {
+    float sink = -part.direction.z, depth = max(depth_of(part) + sink * from_m, 0.0), length_m = to_m - from_m;
+    vec3 below = sun_below(view.sun.xyz, view.attenuation.w);
+    return sun_irradiance_below(below) *
+               path_radiance(water, view.water, 1.0 / below.z, depth, sink, water_m + from_m, length_m) +
+           view.sky_irradiance.rgb * (view.sky_irradiance.w * sky_slant) *
+               path_radiance(water, view.water, sky_slant, depth, sink, water_m + from_m, length_m);
+}
+
+// What is seen of something rasterised in the water: it is drawn by the light that was not scattered on the way. What
+// was scattered forwards is a blur of all that lies there, and for things that are small that is the water around them.
+vec3 overlay_radiance(Part part, End end, vec3 radiance) {
+    if (!part.in_water)
+        return radiance;
+    vec3 drawn = image_transmittance(water, view.water, end.t);
+    const vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
+    float left = dot(luminance, transmittance(water, view.water, end.t));
+    float blurred = 1.0 - clamp(dot(luminance, drawn) / max(left, 1e-9), 0.0, 1.0);
+    return drawn * radiance + blurred * scattered_radiance(part, end.t, max(reach(view, part), end.t), 0.0);
+}
+
 // Radiance that a part brings to the eye, but for the split's factor and, in the air, the water before it.
 //
 //   before_m  length of the path before the part
 //   water_m   as much of it as lay in the water
 vec3 part_radiance(Part part, End end, float before_m, float water_m) {
     vec3 radiance = vec3(0.0);
-    if (part.in_water) {
-        float sink = -part.direction.z, depth = depth_of(part);
-        vec3 below = sun_below(view.sun.xyz, view.attenuation.w);
-        radiance = sun_irradiance_below(below) *
-                       path_radiance(water, view.water, 1.0 / below.z, depth, sink, water_m, end.t) +
-                   view.sky_irradiance.rgb * (view.sky_irradiance.w * sky_slant) *
-                       path_radiance(water, view.water, sky_slant, depth, sink, water_m, end.t);
-    }
+    if (part.in_water)
+        radiance = scattered_radiance(part, 0.0, end.t, water_m);
     if ((end.flags & end_ground) != 0u)
         radiance += ground_radiance(part, end, before_m + end.t, water_m + end.t);
     else if ((end.flags & (end_surface | end_overlay)) == 0u && !part.in_water)
@@ -174,7 +192,7 @@ void main() {
     float water_m = first.in_water ? first_end.t : 0.0;
     vec3 remaining = first.in_water ? transmittance(water, view.water, water_m) : vec3(1.0); // of light from its end
     if ((first_end.flags & end_overlay) != 0u)
-        radiance += remaining * texelFetch(overlay, pixel, 0).rgb;
+        radiance += overlay_radiance(first, first_end, texelFetch(overlay, pixel, 0).rgb);
     if ((first_end.flags & end_surface) != 0u) {
 #ifdef TARN_WAVES
         WaveSurface met = unpack_surface(imageLoad(surfaces, local));

@@ -19,7 +19,8 @@ Medium::Medium(const scene::WaterOptics& optics, bool spectral) : index_(optics.
         for (double nm = 401.25; nm < 700.0; nm += 2.5) { // midpoints
             const scene::WaterBand band = scene::band_at(optics.bands, nm);
             const glm::dvec3 weight = scene::sunlight_colour(nm);
-            waves_.push_back({weight, band.attenuation_per_m(), band.backscattering_per_m});
+            waves_.push_back({weight, band.attenuation_per_m(), band.backscattering_per_m,
+                              band.absorption_per_m + band.scattering_per_m});
             sum += weight;
         }
         for (Wave& wave : waves_)
@@ -28,8 +29,8 @@ Medium::Medium(const scene::WaterOptics& optics, bool spectral) : index_(optics.
         for (int c = 0; c < 3; ++c) {
             glm::dvec3 weight(0.0);
             weight[c] = 1.0;
-            waves_.push_back(
-                {weight, optics.attenuation_per_m()[c], optics.backscattering_per_m[c]});
+            waves_.push_back({weight, optics.attenuation_per_m()[c], optics.backscattering_per_m[c],
+                              optics.attenuation_per_m()[c]});
         }
     }
     double mirrored = 0.0;
@@ -45,6 +46,13 @@ glm::dvec3 Medium::transmittance(double path_m) const {
     glm::dvec3 sum(0.0);
     for (const Wave& wave : waves_)
         sum += wave.weight * std::exp(-wave.attenuation_per_m * path_m);
+    return sum;
+}
+
+glm::dvec3 Medium::image_transmittance(double path_m) const {
+    glm::dvec3 sum(0.0);
+    for (const Wave& wave : waves_)
+        sum += wave.weight * std::exp(-wave.beam_per_m * path_m);
     return sum;
 }
 

@@ -19,13 +19,14 @@ public:
     glm::dvec3 path_radiance(double slant, double depth_m, double sink, double before_m,
                              double distance_m) const;
     glm::dvec3 thrown_back(double depth_m) const;
+    glm::dvec3 image_transmittance(double path_m) const;
     /// Share of an even sky that a flat surface lets in, by integrating over the angles in air.
     double sky_entering() const { return sky_entering_; }
 
 private:
     struct Wave {
         glm::dvec3 weight;
-        double attenuation_per_m, backscattering_per_m;
+        double attenuation_per_m, backscattering_per_m, beam_per_m;
     };
     std::vector<Wave> waves_;
     double index_, sky_entering_;

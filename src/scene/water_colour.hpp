@@ -12,6 +12,8 @@
 ///   1  I, the integral of row 2 from 0 to x
 ///   2  Q = sum of w b_b / 2 pi exp(-(a + b_b) x), what a metre scatters back [1/(m sr)]
 ///   3  B, diffuse reflectance of the surface seen from a bed at depth x, water included
+///   4  sum of w exp(-(a + b) x), of light that has not been scattered at all: what still draws a
+///      thing's edges. Where only channels are known, row 0.
 /// Sources  observer: Wyman, Sloan & Shirley (2013), a fit to CIE 1931; sun: Planck at 5772 K (IAU
 ///          2015); sRGB: IEC 61966-2-1. The physics: docs/physics/water.md.
 #include "scene/water_optics.hpp"
@@ -29,7 +31,7 @@ struct WaterTable {
     double longest_m = 1.0;                    ///< the last texel's path
     double greatest_attenuation_per_m = 0.0;   ///< of any wavelength
     double sky_entering = 1.0;                 ///< share of an even sky that a flat surface lets in
-    std::array<std::vector<glm::vec3>, 4> rows;
+    std::array<std::vector<glm::vec3>, 5> rows;
 
     /// The path at a texel [m]: shortest_m (exp(i s) - 1).
     double path_m(int texel) const;

@@ -557,6 +557,44 @@ TEST(Stats, TableAndPlotOfTheBowlAndNothingElseIsRun) {
     EXPECT_EQ(run("tarn stats " + shared().scene + " --levels 5 --plot x.gif").code, 1);
 }
 
+TEST(Water, IsKeptInTheSceneAndNamedInThePicture) {
+    const TempFolder t;
+    const std::string scene = (t / "lake").string();
+    ASSERT_EQ(run("tarn import " + shared().dem + " --level 10 --secchi 3 -o " + scene).code, 0);
+    const scene::Scene kept = scene_files::load(scene);
+    EXPECT_EQ(kept.optics.name, "Secchi depth 3 m");
+    ASSERT_EQ(kept.optics.bands.size(), 31u);
+    EXPECT_NE(run("tarn info " + scene).out.find("a white disc disappears at 3.0 m"),
+              std::string::npos);
+    const std::string picture = " --size 64x48 --samples 1 --camera top ";
+    ASSERT_EQ(run("tarn render " + scene + picture + "-o " + (t / "a.exr").string()).code, 0);
+    const auto named = [&](const std::string& option, const std::string& name) {
+        const std::string out = (t / "b.exr").string();
+        const Outcome o = run("tarn render " + scene + picture + option + " -o " + out);
+        EXPECT_EQ(o.code, 0) << o.err;
+        const std::string bytes = test_support::read_file(out);
+        EXPECT_NE(bytes.find(name), std::string::npos) << option;
+        return bytes;
+    };
+    named("", "Secchi depth 3 m; a ");
+    named("", "; 31 bands");
+    named("--water 'jerlov 3C'", "jerlov 3C; a ");
+    named("--colour rgb", "; three channels");
+    named("--chlorophyll 8 --cdom .5",
+          "chlorophyll 8 mg/m3, CDOM 0.5 /m at 440 nm, minerals 0 g/m3");
+    std::ofstream(t / "own.csv") << "nm a b\n400 .2 .3\n700 .7 .2\n";
+    named("--water-table " + (t / "own.csv").string(), "table own.csv; a ");
+    expect_one_line("tarn render " + scene + " --secchi 0 -o " + (t / "c.png").string(), 1,
+                    "Secchi depth [m] is 0");
+    expect_one_line("tarn render " + scene + " --secchi 2 --cdom 1 -o " + (t / "c.png").string(), 1,
+                    "exclude each other");
+    expect_one_line("tarn render " + scene + " --turbidity -1 -o " + (t / "c.png").string(), 1,
+                    "turbidity [g/m3] is -1");
+    expect_one_line("tarn render " + scene + " --water-table none.csv -o " + (t / "c.png").string(),
+                    1, "none.csv: cannot be read");
+    EXPECT_EQ(run("tarn render " + scene + " --water ink -o " + (t / "c.png").string()).code, 2);
+}
+
 TEST(Waves, NumbersForPeopleAndPrograms) {
     const std::string scene = shared().scene;
     const Outcome o = run("tarn waves " + scene + " --wind 8 --wind-from 240");

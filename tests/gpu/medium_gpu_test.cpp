@@ -22,7 +22,8 @@ public:
         for (const auto& row : table.rows)
             for (const glm::vec3& value : row)
                 texels.emplace_back(value, 0.0f);
-        texture_ = gpu::Texture2D(GL_RGBA32F, table.texels, 4, 1, gpu::Filter::nearest, "water");
+        texture_ = gpu::Texture2D(GL_RGBA32F, table.texels, int(table.rows.size()), 1,
+                                  gpu::Filter::nearest, "water");
         texture_.upload(GL_RGBA, GL_FLOAT, texels.data());
         function_.emplace(
             "lib/medium.glsl", body,
@@ -66,8 +67,12 @@ TEST(MediumGpu, TransmittanceAndWhatIsThrownBackAgree) {
             MediumFunction(optics, "result.rgb = transmittance(water, scale, x.x);")(x);
         const auto thrown =
             MediumFunction(optics, "result.rgb = thrown_back(water, scale, x.x);")(x);
+        const auto drawn =
+            MediumFunction(optics, "result.rgb = image_transmittance(water, scale, x.x);")(x);
         for (std::size_t i = 0; i < x.size(); ++i)
             for (int k = 0; k < 3; ++k) {
+                ASSERT_NEAR(drawn[i][k], medium.image_transmittance(x[i].x)[k], 3e-4)
+                    << optics.name << " " << x[i].x << " m, channel " << k;
                 // Of what falls in, white is 1; the oracle sums in other steps (2.5 nm).
                 ASSERT_NEAR(passed[i][k], medium.transmittance(x[i].x)[k], 1e-4)
                     << optics.name << " " << x[i].x << " m, channel " << k;

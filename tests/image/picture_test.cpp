@@ -80,6 +80,50 @@ TEST(Picture, MountainLakeAboveAndBelow) {
                         {"overview", "shore", "top", "dive"});
 }
 
+// A white disc let down into water made for a Secchi depth, seen from just below the surface: it
+// disappears, at the eye's least contrast of .0066 (Blackwell 1946, as in the rule), about there.
+TEST(Picture, ASecchiDiscDisappearsWhereItWasAsked) {
+    test_support::context();
+    for (const double asked : {1.0, 4.0, 12.0}) {
+        scene::Scene scene = scene::bowl(65);
+        scene.lakes[0].bed = Bed::unknown; // nothing but water below
+        scene.optics = scene::water_by_secchi(asked);
+        render::Renderer renderer(scene);
+        scene::View view;
+        view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.3, 0.2, 0.8)));
+        view.settings = {.width_px = 8, .height_px = 8, .samples = 1, .least_transmittance = 1e-6};
+        view.camera = scene::look({0, 0, 9.999}, 0, -90, 1.0);
+        const reference::Medium medium(scene.optics, true);
+        const glm::dvec3 sun = view.lighting.sun_direction,
+                         under = reference::sun_below(sun, scene.optics.index);
+        const glm::dvec3 sunlight =
+            view.lighting.sun_irradiance * under.z *
+            reference::sun_share_below(sun, under, scene.optics.index, false);
+        const auto luminance = [](glm::vec3 c) {
+            return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
+        };
+        const double water = luminance(renderer.draw(view).radiance[27]);
+        const auto contrast = [&](double z) {
+            const glm::dvec3 radiance = 0.85 / M_PI *
+                                        (sunlight * medium.transmittance(z / under.z) +
+                                         view.lighting.sky_irradiance * medium.sky_entering() *
+                                             medium.transmittance(1.19 * z));
+            view.overlay =
+                scene::Overlay{8, 8, std::vector<glm::vec4>(64, glm::vec4(radiance, float(z)))};
+            return luminance(renderer.draw(view).radiance[27]) / water - 1.0;
+        };
+        double shallow = 0.01 * asked, deep = 20.0 * asked;
+        ASSERT_GT(contrast(shallow), 1.0);
+        ASSERT_LT(contrast(deep), 0.0066);
+        for (int i = 0; i < 30; ++i) {
+            const double middle = 0.5 * (shallow + deep);
+            (contrast(middle) > 0.0066 ? shallow : deep) = middle;
+        }
+        std::printf("Secchi depth asked %.1f m, in the picture %.2f m\n", asked, deep);
+        EXPECT_NEAR(deep, asked, 0.15 * asked);
+    }
+}
+
 // Water by its wavelengths, from crystal to mud and brown: the frame's one look-up against sums
 // over 120 wavelengths at every pixel.
 TEST(Picture, WatersByTheirWavelengths) {

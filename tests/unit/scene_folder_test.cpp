@@ -5,6 +5,7 @@
 #include "geo/frame.hpp"
 #include "image/files.hpp"
 #include "scene/samples.hpp"
+#include "scene/water_types.hpp"
 #include "scene_files/scene_folder.hpp"
 #include "scene_files/scene_json.hpp"
 #include "support/files.hpp"
@@ -25,6 +26,7 @@ scene::Scene sample() {
         .side = 2, .reach_m = 100, .east_m = {1, 2, 3, 4}, .north_m = {4, 3, 2, 1}};
     s.lakes[0].name = "Lake \"Ä\"";
     s.lakes[0].bed = Bed::unknown;
+    s.optics = scene::water_type("humic lake");
     s.lakes[0].volume_m3.reset();
     s.cameras.push_back({"here", scene::look({1, 2, 30}, 10, -20, 50)});
     s.report.notes = {"a note"};
@@ -60,6 +62,8 @@ TEST(SceneJson, RoundTripsEveryField) {
     EXPECT_EQ(second.substr(second.find("\"import\"")), first.substr(first.find("\"import\"")));
     EXPECT_EQ(b.frame, a.frame);
     EXPECT_EQ(b.lakes[0].name, a.lakes[0].name);
+    ASSERT_EQ(b.optics.bands.size(), 31u);
+    EXPECT_EQ(b.optics.bands[7].backscattering_per_m, a.optics.bands[7].backscattering_per_m);
     EXPECT_FALSE(b.lakes[0].volume_m3.has_value());
     EXPECT_EQ(b.ground.size(), a.ground.size());
 }
@@ -92,6 +96,7 @@ TEST(SceneJson, EveryBrokenFieldIsNamed) {
         {"\"file\": \"ground.tif\"", "\"file\": \"/etc/passwd\"", "no plain file name"},
         {"\"file\": \"water.tif\"", "\"file\": \"..\"", "no plain file name"},
         {"\"index\": 1.333", "\"index\": null", "optics.index must be a number"},
+        {"\"bands\": [", "\"bands\": [[400, 0.1, 0.1, 0.2],", "optics.bands[0][3] is 0.2"},
         {"\"fov_deg\": 50.0", "\"fov_deg\": 500", "cameras[0].fov_deg is 500"},
         {"\"seed_node\": [\n", "\"seed_node\": [99,\n", "seed_node must be a list of 2"},
     };
