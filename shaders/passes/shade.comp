@@ -2,6 +2,7 @@
 // passes/shade.comp — the picture: what light each part of a path brings to the camera.
 // Reads hits, heights (for normals), sky and orthophoto; adds to radiance. One invocation a pixel of the
 // tile. Walks nowhere.
+#include "lib/air.glsl"
 #include "lib/ground_colour.glsl"
 #include "lib/medium.glsl"
 #include "lib/parts.glsl"
@@ -95,6 +96,15 @@ vec3 ground_radiance(Part part, End end, float path_m, float water_m) {
     return albedo * inverse_pi * irradiance;
 }
 
+// What haze leaves of light that comes along a part from `length_m` away, and what it adds of the horizon's.
+vec3 through_air(Part part, float length_m, vec3 radiance) {
+    if (!on(TARN_FLAG_AIR))
+        return radiance;
+    vec3 left = air_transmittance(view.attenuation.rgb, view.backscattering.x, part.origin.z - view.look.z,
+                                  part.direction.z, length_m);
+    return radiance * left + (1.0 - left) * sky_radiance(sky_table, horizon_of(part.direction), view.sun.xyz);
+}
+
 // Radiance that the water itself scatters towards the eye along a part, between two places of it.
 //
 //   water_m  path in the water before the part
@@ -127,8 +137,11 @@ vec3 part_radiance(Part part, End end, float before_m, float water_m) {
     vec3 radiance = vec3(0.0);
     if (part.in_water)
         radiance = scattered_radiance(part, 0.0, end.t, water_m);
-    if ((end.flags & end_ground) != 0u)
+    if ((end.flags & end_ground) != 0u) {
         radiance += ground_radiance(part, end, before_m + end.t, water_m + end.t);
+        if (!part.in_water)
+            radiance = through_air(part, end.t, radiance);
+    }
     else if ((end.flags & (end_surface | end_overlay)) == 0u && !part.in_water)
         radiance += sky(part.direction);
     return radiance;
@@ -233,6 +246,8 @@ void main() {
             radiance += part.weight * (part.in_water ? brought : remaining * brought);
         }
     }
+    if (!first.in_water && (first_end.flags & (end_surface | end_overlay)) != 0u)
+        radiance = through_air(first, first_end.t, radiance);
     radiance *= view.options.w;
     if (view.offset.z > 0.5)
         radiance += imageLoad(radiance_image, pixel).rgb;

@@ -42,6 +42,7 @@ using ivec4 = glm::ivec4;
 #define TARN_FLAG_UNDER_WATER 64u
 #define TARN_FLAG_OVERLAY 128u
 #define TARN_FLAG_THROWN_BACK 256u
+#define TARN_FLAG_AIR 512u
 
 struct ViewBlock {
     vec4 camera;          // xyz: position from the node `base` (grid), w: angle of a pixel [rad]
@@ -54,8 +55,8 @@ struct ViewBlock {
     vec4 sun;             // xyz: towards the sun, w: angular radius of its disc [rad]
     vec4 sun_irradiance;  // rgb: on a plane facing the sun, w: -
     vec4 sky_irradiance;  // rgb: on a horizontal plane, w: share that flat water lets in
-    vec4 attenuation;     // rgb: -, w: index of refraction
-    vec4 backscattering;  // rgb: -, w: greatest path in water [m]
+    vec4 attenuation;     // rgb: of the air at the lake's level [1/m], w: index of refraction of the water
+    vec4 backscattering;  // x: 1 / scale height of the air [1/m], yz: -, w: greatest path in water [m]
     vec4 water;           // of the water's table: lib/medium.glsl, water_row()
     vec4 look;            // x: tree line [m], y: snow line [m], z: lake level [m] (all above z = 0),
                           // w: uniform ground albedo, < 0 = the colour scheme

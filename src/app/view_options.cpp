@@ -249,6 +249,8 @@ void add_view_options(CLI::App& c, ViewWords& w) {
     c.add_option("--sun-irradiance", w.sun_irradiance, "R,G,B or one number, facing the sun (lab)");
     c.add_option("--sky-radiance", w.sky_radiance,
                  "R,G,B or one number: an even sky instead of the clear one (lab)");
+    c.add_option("--visibility", w.visibility_km,
+                 "of the air [km], .1 to 1000: haze over distance; default: clear air");
     c.add_option("--ground-albedo", w.settings.ground_albedo,
                  "one grey in [0, 1] for all ground (lab)");
     add_water_options(c, w);
@@ -445,6 +447,11 @@ scene::View make_view(const ViewWords& w, scene::Scene& scene) {
     for (int k = 0; k < 3; ++k)
         if (!(view.lighting.sun_irradiance[k] >= 0.0 && view.lighting.sky_irradiance[k] >= 0.0))
             throw Error("--sun-irradiance and --sky-radiance must not be negative");
+    if (w.visibility_km) {
+        if (!(*w.visibility_km >= 0.1 && *w.visibility_km <= 1000.0))
+            throw Error(text("--visibility is ", *w.visibility_km, " km, must be in [0.1, 1000]"));
+        view.lighting.visibility_m = 1000.0 * *w.visibility_km;
+    }
     if (w.no_sun_disc)
         view.lighting.sun_disc = false;
     view.camera = parse_camera(w.camera, scene, sun, double(width) / height);

@@ -14,6 +14,7 @@ struct ViewWords {
     std::string time, sun, sun_direction, sun_irradiance, sky_radiance;
     std::string absorption, backscattering;
     std::optional<std::string> water, water_table;
+    std::optional<double> visibility_km;
     std::optional<double> secchi, chlorophyll, cdom, turbidity;
     std::string colour = "spectral";
     bool no_thrown_back = false;

@@ -1,5 +1,6 @@
 #include "reference/tracer.hpp"
 
+#include "reference/air.hpp"
 #include "reference/camera.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/ground_colour.hpp"
@@ -266,6 +267,18 @@ private:
         return out;
     }
 
+    /// Light from that far away through the haze, and the haze's own.
+    glm::dvec3 through_air(glm::dvec3 origin, glm::dvec3 direction, double length,
+                           glm::dvec3 radiance) const {
+        if (!light_.visibility_m)
+            return radiance;
+        const glm::dvec3 left =
+            air_transmittance(scene::air_extinction_per_m(light_), 1.0 / scene::haze_scale_height_m,
+                              origin.z - scene_.lakes.front().level_m, direction.z, length);
+        return radiance * left +
+               (1.0 - left) * sky_radiance(light_.sky, horizon_of(direction), light_.sun_direction);
+    }
+
     bool blocked(glm::dvec3 from, glm::dvec3 towards, double reach) const {
         return trace_field(scene_.ground, nullptr, from, towards, reach, bottom_m_).has_value();
     }
@@ -370,7 +383,8 @@ private:
             return sky(direction);
         const Hit& hit = met->hit;
         if (!hit.water)
-            return land(hit, direction, pixel_rad_ * (before_m + hit.t));
+            return through_air(origin, direction, hit.t,
+                               land(hit, direction, pixel_rad_ * (before_m + hit.t)));
         const Lake lake{met->level_m, scene_.lake_at_level(met->level_m).bed != Bed::unknown};
         const Split at = split(direction, *met, false, *lot);
         glm::dvec3 out(0.0);
@@ -379,7 +393,7 @@ private:
         if (settings_.refraction && at.mirror < 1.0)
             out += at.through *
                    in_water(hit.point, at.refracted, lake, before_m + hit.t, 0.0, nullptr, {});
-        return out;
+        return through_air(origin, direction, hit.t, out);
     }
 
     /// The first of bed and moving surface for a ray that starts in the water.

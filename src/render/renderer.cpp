@@ -240,8 +240,10 @@ void Renderer::prepare(const scene::View& view) {
     block_.sun_irradiance = glm::vec4(glm::vec3(light.sun_irradiance), 0.0f);
     block_.sky_irradiance = glm::vec4(glm::vec3(light.sky_irradiance), 1.0f);
     const scene::WaterOptics& optics = scene_.optics;
-    block_.attenuation = {0.0f, 0.0f, 0.0f, float(optics.index)};
-    block_.backscattering = {0.0f, 0.0f, 0.0f, float(scene::greatest_path_m(optics, settings))};
+    block_.attenuation =
+        glm::vec4(glm::vec3(scene::air_extinction_per_m(light)), float(optics.index));
+    block_.backscattering = {float(1.0 / scene::haze_scale_height_m), 0.0f, 0.0f,
+                             float(scene::greatest_path_m(optics, settings))};
     upload_water(settings.spectral);
     const double level = scene_.lakes.front().level_m;
     block_.look = {float(scene_.look.tree_line_m - ground.offset_m),
@@ -253,6 +255,7 @@ void Renderer::prepare(const scene::View& view) {
     flags |= settings.shadows ? TARN_FLAG_SHADOWS : 0u;
     flags |= settings.reflection ? TARN_FLAG_REFLECTION : 0u;
     flags |= settings.refraction ? TARN_FLAG_REFRACTION : 0u;
+    flags |= light.visibility_m ? TARN_FLAG_AIR : 0u;
     flags |= settings.thrown_back ? TARN_FLAG_THROWN_BACK : 0u;
     flags |= settings.fresnel == scene::Fresnel::schlick ? TARN_FLAG_SCHLICK : 0u;
     flags |= light.sun_disc ? TARN_FLAG_SUN_DISC : 0u;

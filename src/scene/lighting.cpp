@@ -113,6 +113,14 @@ Lighting clear_sky(glm::dvec3 sun_direction) {
     return out;
 }
 
+glm::dvec3 air_extinction_per_m(const Lighting& lighting) {
+    if (!lighting.visibility_m)
+        return glm::dvec3(0.0);
+    const double green = 3.912 / *lighting.visibility_m;
+    return {green * std::pow(550.0 / 620.0, 1.3), green * std::pow(550.0 / 545.0, 1.3),
+            green * std::pow(550.0 / 450.0, 1.3)};
+}
+
 Lighting uniform_sky(glm::dvec3 sun_direction, glm::dvec3 sun_irradiance, glm::dvec3 sky_radiance) {
     Lighting out;
     out.sun_direction = glm::normalize(sun_direction);

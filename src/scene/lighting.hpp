@@ -4,6 +4,7 @@
 /// Units  relative: the sun outside the atmosphere has perpendicular irradiance pi in each
 ///        channel, so a white matte surface facing it would have radiance 1.
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 namespace tarn::scene {
@@ -25,8 +26,19 @@ struct Lighting {
     glm::dvec3 sun_irradiance{0};      ///< on a plane facing the sun, at the ground
     bool sun_disc = true;              ///< is the sun itself to be seen
     SkyTable sky;
+    /// Distance at which a black thing's contrast with the horizon falls to .02 [m], at the height
+    /// of the lake, [100, 1e6]; none: clear air, costs nothing.
+    std::optional<double> visibility_m;
     glm::dvec3 sky_irradiance{0}; ///< of the sky alone on a horizontal plane
 };
+
+/// The haze thins out by e over this height above the lake [m]: the boundary layer's usual depth.
+inline constexpr double haze_scale_height_m = 1500.0;
+
+/// Extinction of the air at the lake's height in the three channels [1/m]: 3.912 / visibility at
+/// 550 nm (Koschmieder 1924), by wavelength as the sky's aerosol (Angstrom exponent 1.3); 0 in
+/// clear air.
+glm::dvec3 air_extinction_per_m(const Lighting& lighting);
 
 /// Angular radius of the sun [rad]: 16 arc minutes.
 inline constexpr double sun_radius_rad = 0.004654;

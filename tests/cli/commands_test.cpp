@@ -592,6 +592,9 @@ TEST(Water, IsKeptInTheSceneAndNamedInThePicture) {
                     "turbidity [g/m3] is -1");
     expect_one_line("tarn render " + scene + " --water-table none.csv -o " + (t / "c.png").string(),
                     1, "none.csv: cannot be read");
+    named("--visibility 12", "12000");
+    expect_one_line("tarn render " + scene + " --visibility 0 -o " + (t / "c.png").string(), 1,
+                    "--visibility is 0 km");
     EXPECT_EQ(run("tarn render " + scene + " --water ink -o " + (t / "c.png").string()).code, 2);
 }
 

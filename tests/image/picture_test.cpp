@@ -80,6 +80,35 @@ TEST(Picture, MountainLakeAboveAndBelow) {
                         {"overview", "shore", "top", "dive"});
 }
 
+TEST(Picture, HazeFromAboveAndFromTheBank) {
+    const scene::Scene scene = scene::mountain_lake(257);
+    for (const char* preset : {"overview", "shore", "dive"}) {
+        scene::View view;
+        view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.5, 0.4, 0.6)));
+        view.lighting.visibility_m = 8000.0;
+        view.settings = {.width_px = 240, .height_px = 160, .samples = 1};
+        view.camera =
+            scene::preset_camera(scene, scene.lakes[0], preset, view.lighting.sun_direction, 1.5);
+        expect_same_picture(scene, view, std::string("haze ") + preset);
+    }
+}
+
+// Koschmieder's definition: a black thing at the visibility range has .02 of the horizon's
+// contrast.
+TEST(Picture, HazeHidesABlackThingAtItsVisibility) {
+    test_support::context();
+    const scene::Scene scene = scene::tank(); // water at 0
+    render::Renderer renderer(scene);
+    scene::View view;
+    view.lighting = scene::uniform_sky({0, 0, 1}, glm::dvec3(0), glm::dvec3(1));
+    view.lighting.visibility_m = 10000.0;
+    view.settings = {.width_px = 8, .height_px = 8, .samples = 1};
+    view.camera = scene::look({0, 0, 5.0}, 0, 0, 1.0);
+    view.overlay = scene::Overlay{8, 8, std::vector<glm::vec4>(64, glm::vec4(0, 0, 0, 10000.0f))};
+    // .988: the channel's 545 nm for the definition's 550; .0033: 5 m of height.
+    EXPECT_NEAR(1.0 - renderer.draw(view).radiance[27].g, 0.02, 0.001);
+}
+
 // A white disc let down into water made for a Secchi depth, seen from just below the surface: it
 // disappears, at the eye's least contrast of .0066 (Blackwell 1946, as in the rule), about there.
 TEST(Picture, ASecchiDiscDisappearsWhereItWasAsked) {
