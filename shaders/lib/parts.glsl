@@ -101,7 +101,7 @@ Surface calm_surface(Part first, End end) {
 
 // split_part — part 1 or 2 from where part 0 met the surface.
 Part split_part(ViewBlock view, Part first, End end, Surface surface, int number) {
-    Split split = split_at_surface(first.direction, normalize(vec3(-surface.slope, 1.0)), view.attenuation.w,
+    Split split = split_at_surface(first.direction, normalize(vec3(-surface.slope, 1.0)), view.optics.x,
                                    first.in_water, (view.counts.z & TARN_FLAG_SCHLICK) != 0u);
     bool mirrored = number == 1;
     return Part(vec2(end.cell), vec3(end.inside, first.origin.z + end.t * first.direction.z),
@@ -124,7 +124,7 @@ float to_surface(Part part) {
 
 // reach — path after which the part ends whatever it met.
 float reach(ViewBlock view, Part part) {
-    return part.in_water ? min(to_surface(part), view.backscattering.w) : far_m;
+    return part.in_water ? min(to_surface(part), view.optics.y) : far_m;
 }
 
 Ray ray_of(ViewBlock view, Part part) { return ray_from(field_of(view), part.base, part.origin, part.direction); }

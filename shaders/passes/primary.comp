@@ -52,7 +52,7 @@ void store(ivec2 pixel, Part part, float limit, float overlay_t, bool found, Hit
     } else if (overlay_t <= limit && overlay_t < far_m) {
         end.t = overlay_t;
         end.flags = end_overlay;
-    } else if (part.in_water && to_surface(part) <= view.backscattering.w) {
+    } else if (part.in_water && to_surface(part) <= view.optics.y) {
         end.flags = end_surface | (part.bed_known ? end_bed_known : 0u);
         place_at(view, part, limit, end.cell, end.inside);
     }

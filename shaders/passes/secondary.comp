@@ -29,7 +29,7 @@ void main() {
 #ifdef TARN_WAVES
     WaveSurface met = unpack_surface(imageLoad(surfaces, local));
     Surface surface = Surface(slope_of_part(met, number, first.in_water, local + view.tile.xy, view.offset.z,
-                                            first.direction, view.attenuation.w),
+                                            first.direction, view.optics.x),
                               surface_level(heights, view, first, first_end));
 #else
     Surface surface = calm_surface(first, first_end);

@@ -45,7 +45,7 @@ vec3 sky(vec3 direction) {
 
 vec3 sun_irradiance_below(vec3 below) {
     return view.sun_irradiance.rgb *
-           sun_share_below(view.sun.xyz, below, view.attenuation.w, on(TARN_FLAG_SCHLICK));
+           sun_share_below(view.sun.xyz, below, view.optics.x, on(TARN_FLAG_SCHLICK));
 }
 
 // Radiance that leaves the ground where a part ended: land in the air, bed under water.
@@ -80,10 +80,10 @@ vec3 ground_radiance(Part part, End end, float path_m, float water_m) {
             }
         }
     }
-    vec3 towards = part.in_water ? sun_below(view.sun.xyz, view.attenuation.w) : view.sun.xyz;
+    vec3 towards = part.in_water ? sun_below(view.sun.xyz, view.optics.x) : view.sun.xyz;
     float depth = part.in_water ? max(part.level - z, 0.0) : 0.0;
     vec3 irradiance = (0.5 + 0.5 * normal.z) *
-                      (part.in_water ? view.sky_irradiance.rgb * view.sky_irradiance.w *
+                      (part.in_water ? view.sky_irradiance.rgb * view.optics.z *
                                            transmittance(water, view.water, sky_slant * depth + water_m)
                                      : view.sky_irradiance.rgb);
     if ((end.flags & end_lit) != 0u || (!on(TARN_FLAG_SHADOWS) && view.sun.z > 0.0))
@@ -92,7 +92,7 @@ vec3 ground_radiance(Part part, End end, float path_m, float water_m) {
                                            transmittance(water, view.water, depth / towards.z + water_m)
                                      : view.sun_irradiance.rgb);
     if (part.in_water && on(TARN_FLAG_THROWN_BACK)) // what a bright bed gets back from the surface, again and again
-        irradiance /= 1.0 - albedo * clamp(thrown_back(water, view.water, depth), 0.0, 1.0);
+        irradiance /= 1.0 - albedo * thrown_back(water, view.water, depth);
     return albedo * inverse_pi * irradiance;
 }
 
@@ -100,7 +100,7 @@ vec3 ground_radiance(Part part, End end, float path_m, float water_m) {
 vec3 through_air(Part part, float length_m, vec3 radiance) {
     if (!on(TARN_FLAG_AIR))
         return radiance;
-    vec3 left = air_transmittance(view.attenuation.rgb, view.backscattering.x, part.origin.z - view.look.z,
+    vec3 left = air_transmittance(view.air.rgb, view.air.w, part.origin.z - view.look.z,
                                   part.direction.z, length_m);
     return radiance * left + (1.0 - left) * sky_radiance(sky_table, horizon_of(part.direction), view.sun.xyz);
 }
@@ -110,10 +110,10 @@ vec3 through_air(Part part, float length_m, vec3 radiance) {
 //   water_m  path in the water before the part
 vec3 scattered_radiance(Part part, float from_m, float to_m, float water_m) {
     float sink = -part.direction.z, depth = max(depth_of(part) + sink * from_m, 0.0), length_m = to_m - from_m;
-    vec3 below = sun_below(view.sun.xyz, view.attenuation.w);
+    vec3 below = sun_below(view.sun.xyz, view.optics.x);
     return sun_irradiance_below(below) *
                path_radiance(water, view.water, 1.0 / below.z, depth, sink, water_m + from_m, length_m) +
-           view.sky_irradiance.rgb * (view.sky_irradiance.w * sky_slant) *
+           view.sky_irradiance.rgb * (view.optics.z * sky_slant) *
                path_radiance(water, view.water, sky_slant, depth, sink, water_m + from_m, length_m);
 }
 
@@ -141,8 +141,7 @@ vec3 part_radiance(Part part, End end, float before_m, float water_m) {
         radiance += ground_radiance(part, end, before_m + end.t, water_m + end.t);
         if (!part.in_water)
             radiance = through_air(part, end.t, radiance);
-    }
-    else if ((end.flags & (end_surface | end_overlay)) == 0u && !part.in_water)
+    } else if ((end.flags & (end_surface | end_overlay)) == 0u && !part.in_water)
         radiance += sky(part.direction);
     return radiance;
 }
@@ -160,7 +159,7 @@ struct Glitter {
 Glitter glitter_of(Part first, End end, WaveSurface surface) {
     vec3 to_viewer = -first.direction;
     bool schlick = on(TARN_FLAG_SCHLICK);
-    float eta = 1.0 / view.attenuation.w, seen = 0.0;
+    float eta = 1.0 / view.optics.x, seen = 0.0;
     Glitter g = Glitter(vec3(0.0), 0.0, vec3(0.0), 0.0);
     VisibleSlopes visible = visible_slopes(to_viewer, surface.mean, surface.taken);
     for (int k = 0; k < slopes_along * slopes_across; ++k) {
@@ -219,31 +218,34 @@ void main() {
         for (int number = 1; number < 3; ++number) {
 #ifdef TARN_WAVES
             Surface surface = Surface(slope_of_part(met, number, first.in_water, pixel, view.offset.z, first.direction,
-                                                    view.attenuation.w), level);
+                                                    view.optics.x), level);
 #endif
             Part part = split_part(view, first, first_end, surface, number);
             if (!wanted(view, part, number))
                 continue;
             End end = unpack_end(number == 1 ? imageLoad(hits[1], local) : imageLoad(hits[2], local));
+            vec3 beside = vec3(0.0); // what is mirrored besides what this part brings
 #ifdef TARN_WAVES
             if (!first.in_water) {
                 if (number == 2) { // drawn by what facets let through
-                    part.weight = (1.0 - glitter.mirror) / (view.attenuation.w * view.attenuation.w);
+                    part.weight = (1.0 - glitter.mirror) / (view.optics.x * view.optics.x);
                 } else {
                     // The sky's mean is known; where the ray met land instead, that takes the place of the
                     // sky in its direction.
                     vec3 mirrored = glitter.sky + glitter.sun;
-                    if ((end.flags & end_ground) != 0u) {
-                        vec3 hidden = sky_radiance(sky_table, part.direction, view.sun.xyz);
-                        mirrored += met.bright / glitter.seen * (part_radiance(part, end, first_end.t, 0.0) - hidden);
+                    if ((end.flags & end_ground) == 0u) {
+                        radiance += mirrored;
+                        continue;
                     }
-                    radiance += max(mirrored, vec3(0.0)); // a sample's land may hide more sky than its pixel has
-                    continue;
+                    part.weight = met.bright / glitter.seen;
+                    beside = mirrored - part.weight * sky_radiance(sky_table, part.direction, view.sun.xyz);
                 }
             }
 #endif
-            vec3 brought = part_radiance(part, end, first_end.t, water_m);
-            radiance += part.weight * (part.in_water ? brought : remaining * brought);
+            vec3 brought = part.weight * part_radiance(part, end, first_end.t, water_m);
+            if (!part.in_water) // from above, a sample's land may hide more sky than its pixel has
+                brought = first.in_water ? remaining * brought : max(beside + brought, vec3(0.0));
+            radiance += brought;
         }
     }
     if (!first.in_water && (first_end.flags & (end_surface | end_overlay)) != 0u)

@@ -32,7 +32,7 @@ void main() {
 #ifdef TARN_WAVES
         WaveSurface met = unpack_surface(imageLoad(surfaces, local));
         Surface surface = Surface(slope_of_part(met, number, part.in_water, local + view.tile.xy, view.offset.z,
-                                            part.direction, view.attenuation.w),
+                                            part.direction, view.optics.x),
                               surface_level(heights, view, part, first_end));
 #else
         Surface surface = calm_surface(part, first_end);
@@ -52,7 +52,7 @@ void main() {
         return;
     Field field = field_of(view);
     vec3 sun = view.sun.xyz;
-    vec3 towards = part.in_water ? sun_below(sun, view.attenuation.w) : sun;
+    vec3 towards = part.in_water ? sun_below(sun, view.optics.x) : sun;
     vec3 normal = normal_of(ground_gradient(heights, view.grid.xy, end.cell, end.inside, view.heights.y), view.grid.z);
     if ((end.flags & end_surface) != 0u)
         normal = vec3(0.0, 0.0, 1.0);

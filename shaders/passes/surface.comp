@@ -37,7 +37,7 @@ void store_surface(ivec2 pixel, Part part, End end) {
     vec3 taken;
     vec2 mean = wave_slopes(wave_slope_layers, wave_table, waves, at, footprint, amplitude, taken);
     vec3 to_viewer = (part.in_water ? 1.0 : -1.0) * part.direction;
-    vec2 lot = draw_slope(pixel, view.offset.z, to_viewer, mean, taken, part.in_water ? 0.0 : 1.0 / view.attenuation.w, bright);
+    vec2 lot = draw_slope(pixel, view.offset.z, to_viewer, mean, taken, part.in_water ? 0.0 : 1.0 / view.optics.x, bright);
     imageStore(surfaces, pixel - view.tile.xy, pack_surface(WaveSurface(mean, lot, bright, taken)));
 }
 
@@ -58,7 +58,7 @@ void main() {
         float t = texelFetch(overlay, pixel, 0).a;
         overlay_t = t > 0.0 ? t : far_m;
     }
-    float reach_m = part.in_water ? view.backscattering.w : far_m, limit = min(reach_m, overlay_t);
+    float reach_m = part.in_water ? view.optics.y : far_m, limit = min(reach_m, overlay_t);
     Ray ray = ray_of(view, part);
     ray.begin = end.t;
     Hit hit;

@@ -54,9 +54,10 @@ struct ViewBlock {
                           // z: water offset [m], w: water [m per unit texel]
     vec4 sun;             // xyz: towards the sun, w: angular radius of its disc [rad]
     vec4 sun_irradiance;  // rgb: on a plane facing the sun, w: -
-    vec4 sky_irradiance;  // rgb: on a horizontal plane, w: share that flat water lets in
-    vec4 attenuation;     // rgb: of the air at the lake's level [1/m], w: index of refraction of the water
-    vec4 backscattering;  // x: 1 / scale height of the air [1/m], yz: -, w: greatest path in water [m]
+    vec4 sky_irradiance;  // rgb: on a horizontal plane, w: -
+    vec4 air;             // rgb: extinction at the lake's level [1/m], w: 1 / height over which it falls by e [1/m]
+    vec4 optics;          // x: index of refraction of the water, y: greatest path in it [m], z: share of an even
+                          // sky's light that flat water lets in, w: -
     vec4 water;           // of the water's table: lib/medium.glsl, water_row()
     vec4 look;            // x: tree line [m], y: snow line [m], z: lake level [m] (all above z = 0),
                           // w: uniform ground albedo, < 0 = the colour scheme

@@ -178,20 +178,12 @@ void Renderer::upload_water(bool spectral) {
     if (!water_spectral_ || *water_spectral_ != spectral) {
         water_spectral_ = spectral;
         const scene::WaterTable table = scene::make_water_table(scene_.optics, spectral);
-        std::vector<glm::vec4> texels;
-        for (const auto& row : table.rows)
-            for (const glm::vec3& value : row)
-                texels.emplace_back(value, 0.0f);
         water_ = gpu::Texture2D(GL_RGBA32F, table.texels, int(table.rows.size()), 1,
                                 gpu::Filter::nearest, "water");
-        water_.upload(GL_RGBA, GL_FLOAT, texels.data());
-        sky_entering_ = table.sky_entering;
-        water_scale_ = {float(1.0 / table.shortest_m),
-                        float((table.texels - 1) / std::log1p(table.longest_m / table.shortest_m)),
-                        float(table.greatest_attenuation_per_m), float(table.texels - 1)};
+        water_.upload(GL_RGBA, GL_FLOAT, table.packed().data());
+        block_.water = table.scale();
+        block_.optics.z = float(table.sky_entering);
     }
-    block_.water = water_scale_;
-    block_.sky_irradiance.w = float(sky_entering_);
     water_.bind(TARN_TEXTURE_WATER);
 }
 
@@ -238,12 +230,12 @@ void Renderer::prepare(const scene::View& view) {
     const scene::Lighting& light = view.lighting;
     block_.sun = glm::vec4(glm::vec3(light.sun_direction), float(scene::sun_radius_rad));
     block_.sun_irradiance = glm::vec4(glm::vec3(light.sun_irradiance), 0.0f);
-    block_.sky_irradiance = glm::vec4(glm::vec3(light.sky_irradiance), 1.0f);
+    block_.sky_irradiance = glm::vec4(glm::vec3(light.sky_irradiance), 0.0f);
     const scene::WaterOptics& optics = scene_.optics;
-    block_.attenuation =
-        glm::vec4(glm::vec3(scene::air_extinction_per_m(light)), float(optics.index));
-    block_.backscattering = {float(1.0 / scene::haze_scale_height_m), 0.0f, 0.0f,
-                             float(scene::greatest_path_m(optics, settings))};
+    block_.air = glm::vec4(glm::vec3(scene::air_extinction_per_m(light)),
+                           float(1.0 / scene::haze_scale_height_m));
+    block_.optics.x = float(optics.index);
+    block_.optics.y = float(scene::greatest_path_m(optics, settings));
     upload_water(settings.spectral);
     const double level = scene_.lakes.front().level_m;
     block_.look = {float(scene_.look.tree_line_m - ground.offset_m),

@@ -130,8 +130,6 @@ private:
     std::optional<WaveField> waves_;
     gpu::Texture2D water_;               ///< the water's table (scene/water_colour.hpp) ...
     std::optional<bool> water_spectral_; ///< ... as it was made last
-    glm::vec4 water_scale_{0.0f};
-    double sky_entering_ = 1.0;
     gpu::Texture2D surfaces_; ///< of the water met, for the passes after the first; with waves only
     double top_m_ = 0.0, water_top_m_ = 0.0; ///< highest node, above z = 0; highest level
     glm::dvec3 camera_m_{0.0};

@@ -100,6 +100,19 @@ double WaterTable::path_m(int texel) const {
     return shortest_m * std::expm1(std::log1p(longest_m / shortest_m) * texel / (texels - 1));
 }
 
+std::vector<glm::vec4> WaterTable::packed() const {
+    std::vector<glm::vec4> out;
+    for (const auto& row : rows)
+        for (const glm::vec3& value : row)
+            out.emplace_back(value, 0.0f);
+    return out;
+}
+
+glm::vec4 WaterTable::scale() const {
+    return {float(1.0 / shortest_m), float((texels - 1) / std::log1p(longest_m / shortest_m)),
+            float(greatest_attenuation_per_m), float(texels - 1)};
+}
+
 WaterTable make_water_table(const WaterOptics& optics, bool spectral) {
     const std::vector<Band> bands = bands_of(optics, spectral);
     WaterTable table;
@@ -117,7 +130,8 @@ WaterTable make_water_table(const WaterOptics& optics, bool spectral) {
     // By reciprocity: (1 - R_above) = n^2 (1 - R_below) for an even sky.
     table.sky_entering = optics.index * optics.index * (1.0 - from_below);
 
-    // B by optical depth, once for all wavelengths: even steps of its root, the cube's sense.
+    // B by optical depth, once for all wavelengths: in even steps of its root, as it falls steeply
+    // at first.
     constexpr int steps = 256;
     constexpr double deepest = 9.0;
     std::array<double, steps + 1> thrown{};

@@ -19,6 +19,7 @@
 #include "scene/water_optics.hpp"
 
 #include <array>
+#include <glm/vec4.hpp>
 
 namespace tarn::scene {
 
@@ -35,6 +36,10 @@ struct WaterTable {
 
     /// The path at a texel [m]: shortest_m (exp(i s) - 1).
     double path_m(int texel) const;
+    /// As shaders/lib/medium.glsl takes it: the rows one after another, and what turns a path into
+    /// a place in them.
+    std::vector<glm::vec4> packed() const;
+    glm::vec4 scale() const;
 };
 
 /// @param spectral  false: three narrow bands, an exponential each

@@ -21,7 +21,7 @@ struct WaterBand {
 };
 
 struct WaterOptics {
-    std::string name = "clear lake";
+    std::string name = "clear lake, three channels";
     /// Absorption a [1/m], [0, 100]. Pure water (Pope & Fry 1997: .2755, .052, .0092) plus
     /// dissolved organic matter of a clear lake, .03 exp(-.015 (wavelength - 440)) /m.
     glm::dvec3 absorption_per_m{0.2775, 0.058, 0.035};

@@ -1,13 +1,12 @@
 #include "scene/water_types.hpp"
 
 #include "core/error.hpp"
+#include "core/number_table.hpp"
 #include "core/text.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 namespace tarn::scene {
 
@@ -124,14 +123,14 @@ std::vector<WaterBand> bands_of(const Jerlov& type) {
 WaterOptics optics_of(std::string name, std::vector<WaterBand> bands) {
     WaterOptics out;
     out.name = std::move(name);
+    out.bands = std::move(bands);
+    out.validate(); // bands first: what follows trusts their order
     constexpr double channel_nm[3] = {620.0, 545.0, 450.0};
     for (int c = 0; c < 3; ++c) {
-        const WaterBand band = band_at(bands, channel_nm[c]);
+        const WaterBand band = band_at(out.bands, channel_nm[c]);
         out.absorption_per_m[c] = band.absorption_per_m;
         out.backscattering_per_m[c] = band.backscattering_per_m;
     }
-    out.bands = std::move(bands);
-    out.validate();
     return out;
 }
 
@@ -237,43 +236,15 @@ WaterBand band_at(const std::vector<WaterBand>& bands, double nm) {
 }
 
 WaterOptics read_water_table(const std::filesystem::path& path) {
-    std::ifstream in(path);
-    if (!in || !std::filesystem::is_regular_file(path))
-        throw Error(path.string() + ": cannot be read", "check the path of the water's table");
+    const std::string hint =
+        "write wavelength [nm], a, b [1/m] and, if known, b_b [1/m] on each line";
     std::vector<WaterBand> bands;
-    std::string line;
-    for (int number = 1; std::getline(in, line); ++number) {
-        const auto fail = [&](const std::string& what) {
-            throw Error(text(path.string(), ", line ", number, ": ", what),
-                        "write wavelength [nm], a, b [1/m] and, if known, b_b [1/m]");
-        };
-        line = line.substr(0, line.find('#'));
-        std::replace_if(
-            line.begin(), line.end(), [](char c) { return c == ',' || c == ';' || c == '\r'; },
-            ' ');
-        std::istringstream words(line);
-        std::vector<double> v;
-        std::string word;
-        bool numbers = true;
-        while (words >> word) {
-            char* end = nullptr;
-            v.push_back(std::strtod(word.c_str(), &end));
-            numbers = numbers && *end == '\0' && std::isfinite(v.back());
-        }
-        if (v.empty() || (!numbers && bands.empty() && number <= 5))
-            continue; // empty, or a heading
-        if (!numbers || v.size() < 3 || v.size() > 4)
-            fail("'" + line.substr(0, 60) + "' is not three or four numbers");
-        WaterBand band{v[0], v[1], v[2], v.size() == 4 ? v[3] : petzold_backward * v[2]};
-        if (!bands.empty() && band.wavelength_nm <= bands.back().wavelength_nm)
-            fail("wavelengths must rise");
-        if (bands.size() >= 1000)
-            fail("more than 1000 wavelengths");
-        bands.push_back(band);
+    for (const NumberRow& row : read_number_table(path, 3, 4, hint)) {
+        const auto& v = row.values;
+        bands.push_back({v[0], v[1], v[2], v.size() == 4 ? v[3] : petzold_backward * v[2]});
     }
     if (bands.size() < 2)
-        throw Error(path.string() + ": holds fewer than two wavelengths",
-                    "write wavelength [nm], a, b [1/m] in each line");
+        throw Error(path.string() + ": holds fewer than two wavelengths", hint);
     try {
         return optics_of("table " + path.filename().string(), std::move(bands));
     } catch (Error& error) {

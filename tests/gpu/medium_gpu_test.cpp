@@ -18,19 +18,14 @@ public:
     MediumFunction(const scene::WaterOptics& optics, const std::string& body) {
         test_support::context();
         const scene::WaterTable table = scene::make_water_table(optics, true);
-        std::vector<glm::vec4> texels;
-        for (const auto& row : table.rows)
-            for (const glm::vec3& value : row)
-                texels.emplace_back(value, 0.0f);
+        const glm::vec4 scale = table.scale();
         texture_ = gpu::Texture2D(GL_RGBA32F, table.texels, int(table.rows.size()), 1,
                                   gpu::Filter::nearest, "water");
-        texture_.upload(GL_RGBA, GL_FLOAT, texels.data());
+        texture_.upload(GL_RGBA, GL_FLOAT, table.packed().data());
         function_.emplace(
             "lib/medium.glsl", body,
-            text("layout(binding = 0) uniform sampler2D water;\nconst vec4 scale = vec4(",
-                 1.0 / table.shortest_m, ", ",
-                 (table.texels - 1) / std::log1p(table.longest_m / table.shortest_m), ", ",
-                 table.greatest_attenuation_per_m, ", ", table.texels - 1, ");\n"));
+            text("layout(binding = 0) uniform sampler2D water;\nconst vec4 scale = vec4(", scale.x,
+                 ", ", scale.y, ", ", scale.z, ", ", scale.w, ");\n"));
     }
     std::vector<glm::vec4> operator()(const std::vector<glm::vec4>& x,
                                       const std::vector<glm::vec4>& y = {}) const {

@@ -75,20 +75,22 @@ TEST(WaterTypes, TablesAreReadAndBadOnesNamed) {
         std::filesystem::create_directories(file.parent_path());
         std::ofstream(file) << words;
     };
-    write("# a lake\nwavelength,a,b\n400, .1, .5\n550 .2 .4 .01\r\n700;.7;.3\n");
+    write("\xef\xbb\xbf# a lake\nwavelength,a,b\n400, .1, .5\n550 .2 .4 .01\r\n700;.7;.3\n");
     const WaterOptics w = read_water_table(file);
     ASSERT_EQ(w.bands.size(), 3u);
     EXPECT_NEAR(w.bands[0].backscattering_per_m, .0183 * .5, 1e-12);
     EXPECT_NEAR(w.bands[1].backscattering_per_m, .01, 1e-12);
     EXPECT_EQ(w.name, "table water.csv");
     for (const auto& [words, expected] :
-         {std::pair{"400 .1 .5\n400 .2 .4\n", "line 2: wavelengths must rise"},
-          {"400 .1 .5\n500 .2\n", "line 2: '500 .2' is not three or four numbers"},
+         {std::pair{"400 .1 .5\n400 .2 .4\n", "wavelengths must rise at 400 nm"},
+          {"400 .1 .5\n500 .2\n", "line 2: is not 3 to 4 numbers"},
           {"400 .1 .5\n", "fewer than two wavelengths"},
           {"", "fewer than two wavelengths"},
           {"400 -1 .5\n500 .1 .1\n", "absorption_per_m at 400 nm is -1"},
           {"400 .1 .1 .2\n500 .1 .1\n", "backscattering_per_m at 400 nm"},
-          {"400 .1 nan\n500 .1 .1\n600 1 1\nx\n", "line 4"}}) {
+          {"400 .1 nan\n500 .1 .1\n", "line 1: is not 3"},
+          {"400 .1 x\n500 .1 .1\n600 1 1\n", "line 1: is not 3"},
+          {"nm a b\n400 .1 .1\n600 1 1\nx\n", "line 4"}}) {
         write(words);
         try {
             read_water_table(file);
