@@ -2,7 +2,9 @@
 // passes/shade.comp — the picture: what light each part of a path brings to the camera.
 // Reads hits, heights (for normals), sky and orthophoto; adds to radiance. One invocation a pixel of the
 // tile. Walks nowhere.
+#ifdef TARN_HAZE
 #include "lib/air.glsl"
+#endif
 #include "lib/ground_colour.glsl"
 #include "lib/medium.glsl"
 #include "lib/parts.glsl"
@@ -96,14 +98,14 @@ vec3 ground_radiance(Part part, End end, float path_m, float water_m) {
     return albedo * inverse_pi * irradiance;
 }
 
+#ifdef TARN_HAZE
 // What haze leaves of light that comes along a part from `length_m` away, and what it adds of the horizon's.
 vec3 through_air(Part part, float length_m, vec3 radiance) {
-    if (!on(TARN_FLAG_AIR))
-        return radiance;
     vec3 left = air_transmittance(view.air.rgb, view.air.w, part.origin.z - view.look.z,
                                   part.direction.z, length_m);
     return radiance * left + (1.0 - left) * sky_radiance(sky_table, horizon_of(part.direction), view.sun.xyz);
 }
+#endif
 
 // Radiance that the water itself scatters towards the eye along a part, between two places of it.
 //
@@ -139,8 +141,10 @@ vec3 part_radiance(Part part, End end, float before_m, float water_m) {
         radiance = scattered_radiance(part, 0.0, end.t, water_m);
     if ((end.flags & end_ground) != 0u) {
         radiance += ground_radiance(part, end, before_m + end.t, water_m + end.t);
+#ifdef TARN_HAZE
         if (!part.in_water)
             radiance = through_air(part, end.t, radiance);
+#endif
     } else if ((end.flags & (end_surface | end_overlay)) == 0u && !part.in_water)
         radiance += sky(part.direction);
     return radiance;
@@ -248,8 +252,10 @@ void main() {
             radiance += brought;
         }
     }
+#ifdef TARN_HAZE
     if (!first.in_water && (first_end.flags & (end_surface | end_overlay)) != 0u)
         radiance = through_air(first, first_end.t, radiance);
+#endif
     radiance *= view.options.w;
     if (view.offset.z > 0.5)
         radiance += imageLoad(radiance_image, pixel).rgb;

@@ -42,7 +42,6 @@ using ivec4 = glm::ivec4;
 #define TARN_FLAG_UNDER_WATER 64u
 #define TARN_FLAG_OVERLAY 128u
 #define TARN_FLAG_THROWN_BACK 256u
-#define TARN_FLAG_AIR 512u
 
 struct ViewBlock {
     vec4 camera;          // xyz: position from the node `base` (grid), w: angle of a pixel [rad]

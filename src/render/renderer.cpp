@@ -22,7 +22,7 @@ constexpr int tile_pixels = 1 << 22;
 Renderer::Renderer(const scene::Scene& scene, std::optional<bool> rays_in_step)
     : scene_(scene), view_buffer_(sizeof(shared::ViewBlock), nullptr), bounds_(scene, heights_),
       rays_in_step_(rays_in_step.value_or(!gpu::is_software())) {
-    shade_ = gpu::ComputeProgram(gpu::load_shader(gpu::shader_root(), "passes/shade.comp"));
+    use_shade();
     upload_scene();
     view_buffer_.write(&block_, sizeof block_); // bounds are made from what it says of the field
     glBindBufferBase(GL_UNIFORM_BUFFER, TARN_BLOCK_VIEW, view_buffer_.id());
@@ -91,6 +91,15 @@ void Renderer::upload_scene() {
     gpu::check_gl("uploading the scene");
 }
 
+// A picture without haze runs a program that holds none of it.
+void Renderer::use_shade() {
+    if (!shade_.count(hazy_))
+        shade_[hazy_] = gpu::ComputeProgram(
+            gpu::load_shader(gpu::shader_root(), "passes/shade.comp", {}, haze_defines()));
+}
+
+std::string Renderer::haze_defines() const { return hazy_ ? "#define TARN_HAZE 1\n" : ""; }
+
 void Renderer::use_walk(scene::Walk walk, double setting) {
     walk_ = walk;
     const scene::WalkMethod& method = scene::walk_method(walk_);
@@ -118,7 +127,8 @@ std::string Renderer::walk_file() const {
 
 const Renderer::WavyPasses& Renderer::wavy_passes() {
     const std::string defined = (rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "") +
-                                waves_->defines() + (in_slab_ ? "#define TARN_IN_SLAB 1\n" : "");
+                                waves_->defines() + haze_defines() +
+                                (in_slab_ ? "#define TARN_IN_SLAB 1\n" : "");
     const auto key = std::pair(walk_, defined);
     if (const auto known = wavy_passes_.find(key); known != wavy_passes_.end())
         return known->second;
@@ -247,7 +257,6 @@ void Renderer::prepare(const scene::View& view) {
     flags |= settings.shadows ? TARN_FLAG_SHADOWS : 0u;
     flags |= settings.reflection ? TARN_FLAG_REFLECTION : 0u;
     flags |= settings.refraction ? TARN_FLAG_REFRACTION : 0u;
-    flags |= light.visibility_m ? TARN_FLAG_AIR : 0u;
     flags |= settings.thrown_back ? TARN_FLAG_THROWN_BACK : 0u;
     flags |= settings.fresnel == scene::Fresnel::schlick ? TARN_FLAG_SCHLICK : 0u;
     flags |= light.sun_disc ? TARN_FLAG_SUN_DISC : 0u;
@@ -302,6 +311,8 @@ void Renderer::prepare(const scene::View& view) {
         surfaces_ = gpu::Texture2D(GL_RGBA32UI, settings.width_px, tile_rows, 1,
                                    gpu::Filter::nearest, "surfaces");
     use_walk(settings.walk, settings.walk_setting);
+    hazy_ = light.visibility_m.has_value();
+    use_shade();
     bounds_.prepare(walk_, false);
     bind_field(walk_, !under_water());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_LAKES, lakes_.id());
@@ -401,7 +412,7 @@ void Renderer::draw_tile() {
         glMemoryBarrier(images);
     }
     begins("shade");
-    (wavy_ones ? wavy_ones->shade : shade_).use();
+    (wavy_ones ? wavy_ones->shade : shade_.at(hazy_)).use();
     glDispatchCompute(across, down, 1);
     begins("end");
 }

@@ -102,6 +102,8 @@ private:
     };
 
     void upload_scene();
+    void use_shade();
+    std::string haze_defines() const;
     void use_walk(scene::Walk walk, double setting);
     std::string walk_file() const;
     void prepare_waves(const scene::View& view);
@@ -123,7 +125,8 @@ private:
     gpu::Texture2D
         hits_[3]; ///< ends of the parts of the paths of one tile (shaders/lib/parts.glsl)
     gpu::Buffer view_buffer_, lakes_;
-    gpu::ComputeProgram shade_;
+    std::map<bool, gpu::ComputeProgram> shade_; ///< without and with haze
+    bool hazy_ = false;
     FieldBounds bounds_;
     std::map<scene::Walk, WalkPasses> passes_;
     std::map<std::pair<scene::Walk, std::string>, WavyPasses> wavy_passes_;
