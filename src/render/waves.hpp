@@ -34,6 +34,12 @@ public:
     /// @param lift_m    how much the walk's water is raised, >= sea().bound_m
     void bind(glm::dvec2 base, double lift_m);
 
+    /// Heights and slopes alone, for passes that read whole patches.
+    void bind_textures() const {
+        heights_.bind(TARN_TEXTURE_WAVES);
+        slopes_.bind(TARN_TEXTURE_SLOPES);
+    }
+
     /// Height above the level at a place of the scene, unfiltered, at the time of move_to(). Waits
     /// for the GPU.
     double height_at(glm::dvec2 place_m, double depth_m) const;

@@ -21,6 +21,8 @@ void RenderSettings::validate() const {
     require_range("height", height_px, 1, 16384);
     require_range("samples", samples, 1, 1024);
     require_range("least transmittance", least_transmittance, 1e-6, 0.5);
+    if (caustic_texels != 0)
+        require_range("texels of the caustics", caustic_texels, 16, 2048);
     if (walk_setting != 0.0)
         require_range("intersection setting", walk_setting, 1.0, 65536.0);
     if (ground_albedo)
@@ -38,6 +40,17 @@ const std::vector<WalkMethod>& walk_methods() {
         {Walk::cone_steps, "cone-steps", "Dummer 2006", false, 32, "steps"},
         {Walk::uniform_steps, "uniform-steps", "Policarpo et al. 2005", false, 64, "steps"},
         {Walk::direction_steps, "direction-steps", "Tatarchuk 2006", false, 48, "steps"},
+    };
+    return methods;
+}
+
+const std::vector<CausticsMethod>& caustics_methods() {
+    static const std::vector<CausticsMethod> methods = {
+        {Caustics::off, "off", "as below flat water"},
+        {Caustics::splat, "splat", "photons shared out where they land"},
+        {Caustics::photon_map, "photon-map", "Baboud & Decoret 2006"},
+        {Caustics::mesh, "mesh", "Wallace 2016"},
+        {Caustics::back, "back", "after Guardado & Sanchez-Crespo 2004"},
     };
     return methods;
 }

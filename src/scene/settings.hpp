@@ -40,6 +40,24 @@ struct WalkMethod {
 const std::vector<WalkMethod>& walk_methods();
 const WalkMethod& walk_method(Walk walk);
 
+/// How sunlight below waves is gathered (passes/sunlight_photons.comp).
+enum class Caustics {
+    off,        ///< as below flat water; costs nothing
+    splat,      ///< a photon from each texel of the waves, shared out where it lands
+    photon_map, ///< Baboud & Decoret 2006
+    mesh,       ///< Wallace 2016
+    back        ///< after Guardado & Sanchez-Crespo 2004
+};
+
+struct CausticsMethod {
+    Caustics caustics;
+    const char* name;   ///< as typed and shown
+    const char* source; ///< who described it
+};
+
+/// All methods, off first.
+const std::vector<CausticsMethod>& caustics_methods();
+
 struct RenderSettings {
     int width_px = 1280; ///< [1, 16384]
     int height_px = 720; ///< [1, 16384]
@@ -50,6 +68,8 @@ struct RenderSettings {
     bool refraction = true;
     bool spectral = true;    ///< integrate over the water's bands; false: three narrow channels
     bool thrown_back = true; ///< light that the surface sends back to the bed
+    Caustics caustics = Caustics::splat;
+    int caustic_texels = 0; ///< a side of a tile of them; 0: half the waves', else a power of two, [16, 2048]
     double least_transmittance = 0.002;  ///< underwater paths end where less is left, [1e-6, .5]
     std::optional<double> ground_albedo; ///< lab: one grey for all ground, [0, 1]
     Walk walk = Walk::cone_map;

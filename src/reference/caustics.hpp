@@ -1,0 +1,52 @@
+#pragma once
+/// @file caustics.hpp  Double-precision twin of shaders/lib/caustics.glsl, and the sunlight below
+/// waves by many photons: what the GPU's tiles are measured against.
+#include "reference/fresnel.hpp"
+#include "reference/waves.hpp"
+
+#include <functional>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+namespace tarn::reference {
+
+/// What comes through one facet of the surface.
+struct Photon {
+    glm::dvec2 lean{0.0}; ///< metres east and north for each metre of depth
+    double share = 0.0;   ///< flux through a horizontal metre, against that of flat water
+};
+
+/// Same contract as the GLSL function of the same name.
+Photon photon_below(glm::dvec3 sun, glm::dvec2 slope, double index, bool schlick);
+
+/// Height [m] and slope of the surface over a place.
+struct SurfacePoint {
+    double height_m = 0.0;
+    glm::dvec2 slope{0.0};
+};
+using SurfaceFunction = std::function<SurfacePoint(glm::dvec2)>;
+
+/// A square of a horizontal plane, moved along the beam of flat water to the surface.
+struct SunlitSquare {
+    glm::dvec2 corner_m{0.0}; ///< south-western
+    double side_m = 1.0;
+    int texels = 64; ///< a side; row = y
+    bool periodic = true; ///< the surface repeats itself with it
+};
+
+/// Where light comes from and how many photons carry it.
+struct PhotonLight {
+    glm::dvec3 sun{0, 0, 1}; ///< towards it, unit, z > 0
+    double index = 1.333;
+    bool schlick = false;
+    double disc_rad = 0.0;    ///< radius of the sun's disc, each photon comes from a place of it
+    int photons_a_side = 4;   ///< of a texel; evenly strewn, jittered
+    double steepest = 1.0;    ///< slope of the surface, where the square is not periodic
+};
+
+/// Mean sunlight on each texel of a square at a depth, against that below flat water.
+std::vector<double> sunlight_by_photons(const SurfaceFunction& surface, const PhotonLight& light,
+                                        const SunlitSquare& square, double depth_m);
+
+} // namespace tarn::reference
