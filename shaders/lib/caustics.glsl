@@ -57,8 +57,8 @@ float sun_focus(sampler2DArray tiles, SunlightBlock light, WaveBlock waves, vec2
     for (int j = TARN_CASCADES - 1; j >= 0; --j) {
         vec4 own = light.cascades[j];
         vec2 place = waves.patches[j].xy + straight / waves.patches[j].z;
-        // Looked up bilinearly, a level's texel of side w blurs with a variance of w^2 / 4.
-        float level = 0.5 * log2(max((4.0 * depth_m * depth_m * variance + footprint_m * footprint_m) / (own.w * own.w), 1.0));
+        // Looked up bilinearly, a level whose texels are w wide blurs with a variance of w^2 / 4; a pixel with a twelfth.
+        float level = 0.5 * log2(max((4.0 * depth_m * depth_m * variance + footprint_m * footprint_m / 3.0) / (own.w * own.w), 1.0));
         vec2 slice = slice_of_depth(light, j, amplitude[j] * depth_m);
         float first = floor(slice.x);
         vec2 two = textureLod(tiles, vec3(place, float(j) * light.beam.z + first), level).xy;

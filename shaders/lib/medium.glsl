@@ -25,6 +25,17 @@ vec3 thrown_back(sampler2D table, vec4 scale, float depth_m) { return water_row(
 // image_transmittance — of that, what has not been scattered at all, and still draws the edges of things.
 vec3 image_transmittance(sampler2D table, vec4 scale, float path_m) { return water_row(table, scale, 4, path_m); }
 
+// Share of what water scatters that goes off by more than some 2.5 degrees: what goes on within that still lands where
+// caustics and patterns of the bed are. Petzold's mean phase function (Mobley 1994, table 3.10), rounded.
+const float scattered_wide = 0.6;
+
+// pattern_transmittance — of white light, what still draws patterns as wide as a few degrees: between transmittance and
+//                         image_transmittance, by the share that is scattered wide.
+vec3 pattern_transmittance(vec3 transmitted, vec3 unscattered) {
+    vec3 share = clamp(unscattered / max(transmitted, vec3(1e-9)), 0.0, 1.0);
+    return transmitted * pow(share, vec3(scattered_wide));
+}
+
 // path_radiance — light scattered into a straight path by the water itself, per unit of the light's irradiance just
 //                 below the surface on a plane facing it.
 //

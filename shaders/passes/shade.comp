@@ -23,6 +23,9 @@ layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform readonly uimage2D hits[3];
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
 #ifdef TARN_WAVES
 #include "lib/waves.glsl"
+#ifdef TARN_CAUSTICS
+layout(binding = TARN_IMAGE_SUNLIT, r32ui) uniform readonly uimage2D sunlit_image;
+#endif
 layout(binding = TARN_TEXTURE_SKY_SOFT) uniform sampler2D soft_sky;
 layout(binding = TARN_IMAGE_SURFACE, rgba32ui) uniform readonly uimage2D surfaces;
 #endif
@@ -50,11 +53,35 @@ vec3 sun_irradiance_below(vec3 below) {
            sun_share_below(view.sun.xyz, below, view.optics.x, on(TARN_FLAG_SCHLICK));
 }
 
+// How waves focus the sun's light where a part ends, and in the mean of what its way scatters: passes/sunlit.comp.
+struct Sunlit {
+    float bed, way;
+};
+
+#ifdef TARN_CAUSTICS
+Sunlit sunlit_of(ivec2 local, int slot) {
+    vec2 both = unpackHalf2x16(imageLoad(sunlit_image, local + ivec2(0, slot * view.tile.w)).x);
+    return Sunlit(both.x, both.y);
+}
+#endif
+
+// What is left of the sun's light on the bed, on the way there and to the eye. What was not scattered wide on the way
+// still draws where waves have focused it.
+//
+//   way_m   of all the light's path in water
+vec3 sunlight_left(float way_m, Sunlit sunlit) {
+    vec3 left = transmittance(water, view.water, way_m);
+#ifdef TARN_CAUSTICS
+    left += (sunlit.bed - 1.0) * pattern_transmittance(left, image_transmittance(water, view.water, way_m));
+#endif
+    return left;
+}
+
 // Radiance that leaves the ground where a part ended: land in the air, bed under water.
 //
 //   path_m   length of the way from the camera, for the footprint of a pixel
 //   water_m  as much of it as lies in the water: what is left there of the bed's light, is returned
-vec3 ground_radiance(Part part, End end, float path_m, float water_m) {
+vec3 ground_radiance(Part part, End end, float path_m, float water_m, Sunlit sunlit) {
     float z = part.origin.z + end.t * part.direction.z;
     vec4 corners = textureGather(heights, (vec2(end.cell) + 1.0) * view.inverse_size.xy, 0) * view.heights.y;
     if (!part.in_water && z < bilinear(corners, end.inside) - view.options.x) {
@@ -90,8 +117,7 @@ vec3 ground_radiance(Part part, End end, float path_m, float water_m) {
                                      : view.sky_irradiance.rgb);
     if ((end.flags & end_lit) != 0u || (!on(TARN_FLAG_SHADOWS) && view.sun.z > 0.0))
         irradiance += max(dot(normal, towards), 0.0) *
-                      (part.in_water ? sun_irradiance_below(towards) *
-                                           transmittance(water, view.water, depth / towards.z + water_m)
+                      (part.in_water ? sun_irradiance_below(towards) * sunlight_left(depth / towards.z + water_m, sunlit)
                                      : view.sun_irradiance.rgb);
     if (part.in_water && on(TARN_FLAG_THROWN_BACK)) // what a bright bed gets back from the surface, again and again
         irradiance /= 1.0 - albedo * thrown_back(water, view.water, depth);
@@ -110,10 +136,11 @@ vec3 through_air(Part part, float length_m, vec3 radiance) {
 // Radiance that the water itself scatters towards the eye along a part, between two places of it.
 //
 //   water_m  path in the water before the part
-vec3 scattered_radiance(Part part, float from_m, float to_m, float water_m) {
+//   focus    of the sun's light, in the mean over the way
+vec3 scattered_radiance(Part part, float from_m, float to_m, float water_m, float focus) {
     float sink = -part.direction.z, depth = max(depth_of(part) + sink * from_m, 0.0), length_m = to_m - from_m;
     vec3 below = sun_below(view.sun.xyz, view.optics.x);
-    return sun_irradiance_below(below) *
+    return focus * sun_irradiance_below(below) *
                path_radiance(water, view.water, 1.0 / below.z, depth, sink, water_m + from_m, length_m) +
            view.sky_irradiance.rgb * (view.optics.z * sky_slant) *
                path_radiance(water, view.water, sky_slant, depth, sink, water_m + from_m, length_m);
@@ -128,19 +155,19 @@ vec3 overlay_radiance(Part part, End end, vec3 radiance) {
     const vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
     float left = dot(luminance, transmittance(water, view.water, end.t));
     float blurred = 1.0 - clamp(dot(luminance, drawn) / max(left, 1e-9), 0.0, 1.0);
-    return drawn * radiance + blurred * scattered_radiance(part, end.t, max(reach(view, part), end.t), 0.0);
+    return drawn * radiance + blurred * scattered_radiance(part, end.t, max(reach(view, part), end.t), 0.0, 1.0);
 }
 
 // Radiance that a part brings to the eye, but for the split's factor and, in the air, the water before it.
 //
 //   before_m  length of the path before the part
 //   water_m   as much of it as lay in the water
-vec3 part_radiance(Part part, End end, float before_m, float water_m) {
+vec3 part_radiance(Part part, End end, float before_m, float water_m, Sunlit sunlit) {
     vec3 radiance = vec3(0.0);
     if (part.in_water)
-        radiance = scattered_radiance(part, 0.0, end.t, water_m);
+        radiance = scattered_radiance(part, 0.0, end.t, water_m, sunlit.way);
     if ((end.flags & end_ground) != 0u) {
-        radiance += ground_radiance(part, end, before_m + end.t, water_m + end.t);
+        radiance += ground_radiance(part, end, before_m + end.t, water_m + end.t, sunlit);
 #ifdef TARN_HAZE
         if (!part.in_water)
             radiance = through_air(part, end.t, radiance);
@@ -204,7 +231,12 @@ void main() {
     ivec2 pixel = local + view.tile.xy;
     Part first = camera_part(view, pixel);
     End first_end = unpack_end(imageLoad(hits[0], local));
-    vec3 radiance = part_radiance(first, first_end, 0.0, 0.0);
+    Sunlit sunlit = Sunlit(1.0, 1.0);
+#ifdef TARN_CAUSTICS
+    if (first.in_water)
+        sunlit = sunlit_of(local, 0);
+#endif
+    vec3 radiance = part_radiance(first, first_end, 0.0, 0.0, sunlit);
     float water_m = first.in_water ? first_end.t : 0.0;
     vec3 remaining = first.in_water ? transmittance(water, view.water, water_m) : vec3(1.0); // of light from its end
     if ((first_end.flags & end_overlay) != 0u)
@@ -246,7 +278,11 @@ void main() {
                 }
             }
 #endif
-            vec3 brought = part.weight * part_radiance(part, end, first_end.t, water_m);
+#ifdef TARN_CAUSTICS
+            if (part.in_water)
+                sunlit = sunlit_of(local, first.in_water ? 1 : 0);
+#endif
+            vec3 brought = part.weight * part_radiance(part, end, first_end.t, water_m, sunlit);
             if (!part.in_water) // from above, a sample's land may hide more sky than its pixel has
                 brought = first.in_water ? remaining * brought : max(beside + brought, vec3(0.0));
             radiance += brought;

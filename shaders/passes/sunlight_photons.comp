@@ -4,7 +4,7 @@
 // TARN_SUNLIGHT_BACK a texel of the tile.
 //
 // TARN_SUNLIGHT_METHOD, one of
-//   0 splat        a photon from each texel of the waves, shared out between the four texels around its landing
+//   0 splat        TARN_SUNLIGHT_PHOTONS^2 photons from each texel of the waves, shared out where they land
 //   1 photon map   Baboud & Decoret 2006, sec. 4.3: a photon from a random place of each texel falls into one texel
 //                  of the illumination map; passes/sunlight_tiles.comp filters it
 //   2 mesh         Wallace 2016: cells of the refracted mesh carry their flux to the area that they come to; here it
@@ -17,7 +17,14 @@
 #ifndef TARN_SUNLIGHT_METHOD
 #define TARN_SUNLIGHT_METHOD 0
 #endif
+#ifndef TARN_SUNLIGHT_PHOTONS
+#define TARN_SUNLIGHT_PHOTONS 1
+#endif
+#if TARN_SUNLIGHT_METHOD == 0
+layout(local_size_x = 16, local_size_y = 16) in; // each with 2 x 2 photons
+#else
 layout(local_size_x = 8, local_size_y = 8) in;
+#endif
 layout(binding = TARN_TEXTURE_WAVES) uniform sampler2DArray heights;
 layout(binding = TARN_TEXTURE_SLOPES) uniform sampler2DArray slopes;
 layout(binding = TARN_BLOCK_SUNLIGHT, std140) uniform Sunlight { SunlightBlock light; };
@@ -41,14 +48,40 @@ void give(int slice, ivec2 at, float share) {
         atomicAdd(flux[place(slice, at)], amount);
 }
 
-// Shared out between the four texels around; `at` in texels of the tile, middles at halves.
+#if TARN_SUNLIGHT_METHOD == 0
+// Most photons of a group land close together: they are gathered in shared memory, of which each texel is added to
+// the tile once.
+const int window = 32;
+shared uint gathered[window * window];
+ivec2 window_corner;
+
+void give_near(int slice, ivec2 at, float share) {
+    ivec2 inside = at - window_corner;
+    uint amount = uint(share * TARN_SUNLIGHT_UNIT + 0.5);
+    if (all(greaterThanEqual(inside, ivec2(0))) && all(lessThan(inside, ivec2(window))))
+        atomicAdd(gathered[inside.y * window + inside.x], amount);
+    else if (amount > 0u)
+        atomicAdd(flux[place(slice, at)], amount);
+}
+#define GIVE give_near
+#else
+#define GIVE give
+#endif
+
+// Shared out between the texels that a square around `at` covers; `at` in texels of the tile, middles at halves. A photon
+// is as wide as their distance in flat water, which so comes out even: a texel is as wide as a whole number of them.
 void splat(int slice, vec2 at, float share) {
-    vec2 corner = floor(at - 0.5), part = at - 0.5 - corner;
+    float wide = float(side) / float(texels * TARN_SUNLIGHT_PHOTONS);
+    vec2 corner = floor(at - 0.5 * wide), part = clamp((at + 0.5 * wide - corner - 1.0) / wide, 0.0, 1.0);
     ivec2 low = ivec2(corner);
-    give(slice, low, share * (1.0 - part.x) * (1.0 - part.y));
-    give(slice, low + ivec2(1, 0), share * part.x * (1.0 - part.y));
-    give(slice, low + ivec2(0, 1), share * (1.0 - part.x) * part.y);
-    give(slice, low + ivec2(1, 1), share * part.x * part.y);
+    GIVE(slice, low, share * (1.0 - part.x) * (1.0 - part.y));
+    if (part.x > 0.0)
+        GIVE(slice, low + ivec2(1, 0), share * part.x * (1.0 - part.y));
+    if (part.y > 0.0) {
+        GIVE(slice, low + ivec2(0, 1), share * (1.0 - part.x) * part.y);
+        if (part.x > 0.0)
+            GIVE(slice, low + ivec2(1, 1), share * part.x * part.y);
+    }
 }
 
 float depth_of_slice(int slice) {
@@ -65,6 +98,28 @@ Photon photon_at(ivec2 texel, out float height_m) {
     height_m = texelFetch(heights, at, 0).x;
     return photon_below(sun.xyz, texelFetch(slopes, at, 0).xy, sun.w, schlick);
 }
+
+#if TARN_SUNLIGHT_METHOD == 0
+// Of a lattice TARN_SUNLIGHT_PHOTONS times as fine as the waves' texels; between them by the cubic through four
+// (Catmull & Rom).
+Photon photon_of_lattice(ivec2 number, out float height_m) {
+#if TARN_SUNLIGHT_PHOTONS == 1
+    return photon_at(number, height_m);
+#else
+    vec2 at = (vec2(number) + 0.5) / float(TARN_SUNLIGHT_PHOTONS) - 0.5, low = floor(at), t = at - low;
+    vec2 w[4] = vec2[4](0.5 * t * (-1.0 + t * (2.0 - t)), 0.5 * (2.0 + t * t * (-5.0 + 3.0 * t)),
+                        0.5 * t * (1.0 + t * (4.0 - 3.0 * t)), 0.5 * t * t * (t - 1.0));
+    vec3 sum = vec3(0.0);
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 4; ++x) {
+            ivec3 texel = ivec3((ivec2(low) + ivec2(x - 1, y - 1)) & (texels - 1), cascade);
+            sum += w[x].x * w[y].y * vec3(texelFetch(heights, texel, 0).x, texelFetch(slopes, texel, 0).xy);
+        }
+    height_m = sum.x;
+    return photon_below(sun.xyz, sum.yz, sun.w, schlick);
+#endif
+}
+#endif
 
 #if TARN_SUNLIGHT_METHOD == 1
 uint hash(uint v) { // Wellons' lowbias32
@@ -112,11 +167,30 @@ void main() {
     float a_tile = float(side) / float(texels); // texels of the tile per texel of the waves
     float worth = a_tile * a_tile;              // of one photon: flat water fills each texel to 1
 #if TARN_SUNLIGHT_METHOD == 0
-    float height;
-    Photon photon = photon_at(texel, height);
-    vec2 from = (vec2(texel) + 0.5) * a_tile;
-    for (int k = 0; k < slices; ++k)
-        splat(k, landing(from, height, photon, depth_of_slice(k)), worth * photon.share);
+    const int dense = TARN_SUNLIGHT_PHOTONS;
+    a_tile /= float(dense);
+    worth /= float(dense * dense);
+    float heights_m[4];
+    Photon photons[4];
+    for (int c = 0; c < 4; ++c)
+        photons[c] = photon_of_lattice(2 * texel + ivec2(c & 1, c >> 1), heights_m[c]);
+    int index = int(gl_LocalInvocationIndex);
+    for (int i = index; i < window * window; i += 256)
+        gathered[i] = 0u;
+    window_corner = ivec2((vec2(32 * gl_WorkGroupID.xy) + 16.0) * a_tile) - window / 2;
+    for (int k = 0; k < slices; ++k) {
+        barrier();
+        for (int c = 0; c < 4; ++c) {
+            vec2 from = (vec2(2 * texel + ivec2(c & 1, c >> 1)) + 0.5) * a_tile;
+            splat(k, landing(from, heights_m[c], photons[c], depth_of_slice(k)), worth * photons[c].share);
+        }
+        barrier();
+        for (int i = index; i < window * window; i += 256) {
+            if (gathered[i] > 0u)
+                atomicAdd(flux[place(k, window_corner + ivec2(i % window, i / window))], gathered[i]);
+            gathered[i] = 0u;
+        }
+    }
 #elif TARN_SUNLIGHT_METHOD == 1
     uint lot = hash(uint(texel.x + texels * texel.y) ^ uint(cascade) << 28);
     vec2 from = (vec2(texel) + vec2(lot & 0xffffu, lot >> 16) / 65536.0) * a_tile;

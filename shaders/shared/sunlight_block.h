@@ -9,7 +9,7 @@ using vec4 = glm::vec4;
 #endif
 
 #define TARN_BLOCK_SUNLIGHT 2        // uniform block SunlightBlock
-#define TARN_BUFFER_SUNLIGHT 8       // uint: flux of each texel, [cascade][slice][row][column]
+#define TARN_BUFFER_SUNLIGHT 3       // uint: flux of each texel, [cascade][slice][row][column]
 #define TARN_TEXTURE_SUNLIGHT 13     // RG16F array: sunlight at a slice and at the next deeper one
 #define TARN_IMAGE_SUNLIGHT 0        // 0-3: rg16f arrays, levels being written
 

@@ -30,6 +30,7 @@ using ivec4 = glm::ivec4;
 #define TARN_IMAGE_RADIANCE 0  // rgba32f
 #define TARN_IMAGE_DISTANCE 1  // r32f
 #define TARN_IMAGE_MAXIMA 2    // rg32f, written level of the maxima
+#define TARN_IMAGE_SUNLIT 2    // r32ui: how waves focus the light on a bed, and on the way there
 #define TARN_IMAGE_BEAMS 6     // r32f
 #define TARN_IMAGE_HITS 3      // 3, 4, 5: rgba32ui, one image for each part of a path (lib/parts.glsl)
 

@@ -271,6 +271,21 @@ void add_view_options(CLI::App& c, ViewWords& w) {
     c.add_option("--fresnel", w.fresnel, "formula for the reflectance of the surface")
         ->check(CLI::IsMember({"exact", "schlick"}))
         ->capture_default_str();
+    std::vector<std::string> caustics;
+    for (const scene::CausticsMethod& method : scene::caustics_methods())
+        caustics.emplace_back(method.name);
+    c.add_option("--caustics", w.caustics, "how light that waves focus is gathered, or off")
+        ->check(CLI::IsMember(caustics))
+        ->capture_default_str();
+    c.add_option("--caustic-texels", w.settings.caustic_texels,
+                 "a side of a tile of caustics; 0: half as many as the waves'")
+        ->capture_default_str();
+    c.add_option("--caustic-photons", w.settings.caustic_photons,
+                 "of splat, on a side of a texel of the waves: 1, 2 or 4")
+        ->capture_default_str();
+    c.add_option("--shaft-steps", w.settings.shaft_steps,
+                 "places along a view in the water where shafts of light are looked up; 0: none")
+        ->capture_default_str();
     c.add_option("--least-transmittance", w.settings.least_transmittance,
                  "underwater paths end where less is left")
         ->capture_default_str();
@@ -407,6 +422,9 @@ scene::View make_view(const ViewWords& w, scene::Scene& scene) {
     for (const scene::WalkMethod& method : scene::walk_methods())
         if (w.intersection == method.name)
             view.settings.walk = method.walk;
+    for (const scene::CausticsMethod& method : scene::caustics_methods())
+        if (w.caustics == method.name)
+            view.settings.caustics = method.caustics;
     view.settings.shadows = !w.no_shadows;
     view.settings.reflection = !w.no_reflection;
     view.settings.refraction = !w.no_refraction;

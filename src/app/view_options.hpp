@@ -19,7 +19,7 @@ struct ViewWords {
     std::string colour = "spectral";
     bool no_thrown_back = false;
     std::optional<double> index;
-    std::string fresnel = "exact", intersection = "cone-map";
+    std::string fresnel = "exact", intersection = "cone-map", caustics = "splat";
     bool no_shadows = false, no_reflection = false, no_refraction = false, no_sun_disc = false;
     scene::RenderSettings settings;
     // Waves: what is not given is as the scene says.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <memory>
 #include <mutex>
 #include <random>
 #include <tbb/blocked_range.h>
@@ -28,6 +30,38 @@ Photon photon_below(glm::dvec3 sun, glm::dvec2 slope, double index, bool schlick
     const double area = 1.0 / normal.z; // of facet over a horizontal metre
     return {glm::dvec2(down.x, down.y) / -down.z,
             (1.0 - mirror(cosine)) * cosine * area / ((1.0 - mirror(sun.z)) * sun.z)};
+}
+
+SurfaceFunction tabulated(const SurfaceFunction& surface, glm::dvec2 corner_m, double side_m,
+                          int nodes) {
+    auto table = std::make_shared<std::vector<glm::dvec3>>(std::size_t(nodes) * std::size_t(nodes));
+    tbb::parallel_for(0, nodes, [&](int row) {
+        for (int col = 0; col < nodes; ++col) {
+            const SurfacePoint p = surface(corner_m + side_m / nodes * glm::dvec2(col, row));
+            (*table)[std::size_t(row) * std::size_t(nodes) + std::size_t(col)] = {
+                p.height_m, p.slope.x, p.slope.y};
+        }
+    });
+    return [=](glm::dvec2 at) {
+        const glm::dvec2 in = (at - corner_m) * (nodes / side_m), low = glm::floor(in);
+        double wx[4], wy[4];
+        const auto weights = [](double t, double* w) { // Catmull & Rom
+            w[0] = 0.5 * t * (-1.0 + t * (2.0 - t));
+            w[1] = 0.5 * (2.0 + t * t * (-5.0 + 3.0 * t));
+            w[2] = 0.5 * t * (1.0 + t * (4.0 - 3.0 * t));
+            w[3] = 0.5 * t * t * (t - 1.0);
+        };
+        weights(in.x - low.x, wx);
+        weights(in.y - low.y, wy);
+        const auto wrap = [nodes](long i) { return std::size_t(((i % nodes) + nodes) % nodes); };
+        glm::dvec3 sum(0.0);
+        for (int j = 0; j < 4; ++j) {
+            const std::size_t row = wrap(long(low.y) + j - 1) * std::size_t(nodes);
+            for (int i = 0; i < 4; ++i)
+                sum += wx[i] * wy[j] * (*table)[row + wrap(long(low.x) + i - 1)];
+        }
+        return SurfacePoint{sum.x, {sum.y, sum.z}};
+    };
 }
 
 std::vector<double> sunlight_by_photons(const SurfaceFunction& surface, const PhotonLight& light,

@@ -27,6 +27,11 @@ struct SurfacePoint {
 };
 using SurfaceFunction = std::function<SurfacePoint(glm::dvec2)>;
 
+/// The same from a table of nodes x nodes places over a square that repeats itself, by cubics: many
+/// photons soon cost less so.
+SurfaceFunction tabulated(const SurfaceFunction& surface, glm::dvec2 corner_m, double side_m,
+                          int nodes);
+
 /// A square of a horizontal plane, moved along the beam of flat water to the surface.
 struct SunlitSquare {
     glm::dvec2 corner_m{0.0}; ///< south-western

@@ -43,9 +43,12 @@ void Renderer::upload_scene() {
     heights_bytes_ = packed.size() * sizeof packed[0];
     block_.walk = {FieldBounds::root_level(size), FieldBounds::cone_shift, 0, 0};
     water_top_m_ = -1e6; // where there is none: below everything
-    for (const std::uint16_t code : water.codes.values)
-        if (code != no_water_code)
-            water_top_m_ = std::max(water_top_m_, water.offset_m + water.scale_m * code);
+    for (std::size_t i = 0; i < size.count(); ++i)
+        if (const std::uint16_t code = water.codes.values[i]; code != no_water_code) {
+            const double level = water.offset_m + water.scale_m * code;
+            water_top_m_ = std::max(water_top_m_, level);
+            deepest_m_ = std::max(deepest_m_, level - ground.offset_m - ground.scale_m * ground.codes.values[i]);
+        }
 
     // Heights on the GPU count from the ground's offset: float32 then resolves a fraction of a
     // code even for relief at some kilometres of altitude.
@@ -98,6 +101,11 @@ void Renderer::use_shade() {
             gpu::load_shader(gpu::shader_root(), "passes/shade.comp", {}, haze_defines()));
 }
 
+std::string Renderer::sunlight_defines() const {
+    return caustics_ ? text("#define TARN_CAUSTICS 1\n#define TARN_SHAFTS ", shaft_steps_, "\n")
+                     : std::string();
+}
+
 std::string Renderer::haze_defines() const { return hazy_ ? "#define TARN_HAZE 1\n" : ""; }
 
 void Renderer::use_walk(scene::Walk walk, double setting) {
@@ -127,7 +135,7 @@ std::string Renderer::walk_file() const {
 
 const Renderer::WavyPasses& Renderer::wavy_passes() {
     const std::string defined = (rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "") +
-                                waves_->defines() + haze_defines() +
+                                waves_->defines() + haze_defines() + sunlight_defines() +
                                 (in_slab_ ? "#define TARN_IN_SLAB 1\n" : "");
     const auto key = std::pair(walk_, defined);
     if (const auto known = wavy_passes_.find(key); known != wavy_passes_.end())
@@ -139,7 +147,8 @@ const Renderer::WavyPasses& Renderer::wavy_passes() {
     };
     return wavy_passes_
         .emplace(key, WavyPasses{pass("primary"), pass("surface"), pass("secondary"),
-                                 pass("shadow"), pass("shade")})
+                                 pass("shadow"),
+                                 caustics_ ? pass("sunlit") : gpu::ComputeProgram(), pass("shade")})
         .first->second;
 }
 
@@ -179,8 +188,31 @@ void Renderer::prepare_waves(const scene::View& view) {
     if (!wavy())
         return;
     waves_->move_to(time_s);
+    prepare_sunlight(view);
     const Heightfield& ground = scene_.ground;
     waves_->bind({ground.x_m(double(block_.base.x)), ground.y_m(double(block_.base.y))}, lift);
+}
+
+// Caustics, where waves move, the sun shines and the light comes to a bed.
+void Renderer::prepare_sunlight(const scene::View& view) {
+    const scene::RenderSettings& settings = view.settings;
+    caustics_ = settings.caustics != scene::Caustics::off && view.lighting.sun_direction.z > 0.0 &&
+                !waves_->sea().cascades.empty();
+    shaft_steps_ = caustics_ ? settings.shaft_steps : 0;
+    if (!caustics_)
+        return;
+    SunlightSettings asked;
+    asked.sun = view.lighting.sun_direction;
+    asked.index = scene_.optics.index;
+    asked.schlick = settings.fresnel == scene::Fresnel::schlick;
+    asked.method = settings.caustics;
+    asked.texels = settings.caustic_texels;
+    asked.photons = settings.caustic_photons;
+    asked.deepest_m = deepest_m_;
+    sunlight_.set(waves_->sea(), asked);
+    sunlight_.on_pass = on_pass;
+    sunlight_.update(*waves_);
+    sunlight_.bind();
 }
 
 // The frame looks up what was summed over wavelengths here.
@@ -310,6 +342,9 @@ void Renderer::prepare(const scene::View& view) {
     if (wavy() && (surfaces_.width_px() != settings.width_px || surfaces_.height_px() != tile_rows))
         surfaces_ = gpu::Texture2D(GL_RGBA32UI, settings.width_px, tile_rows, 1,
                                    gpu::Filter::nearest, "surfaces");
+    if (caustics_ && (sunlit_.width_px() != settings.width_px || sunlit_.height_px() != 2 * tile_rows))
+        sunlit_ = gpu::Texture2D(GL_R32UI, settings.width_px, 2 * tile_rows, 1,
+                                 gpu::Filter::nearest, "sunlit");
     use_walk(settings.walk, settings.walk_setting);
     hazy_ = light.visibility_m.has_value();
     use_shade();
@@ -333,6 +368,8 @@ void Renderer::bind_images() {
         hits_[k].bind_image(TARN_IMAGE_HITS + k, GL_READ_WRITE);
     if (wavy())
         surfaces_.bind_image(TARN_IMAGE_SURFACE, GL_READ_WRITE);
+    if (caustics_)
+        sunlit_.bind_image(TARN_IMAGE_SUNLIT, GL_READ_WRITE);
 }
 
 void Renderer::move_waves(double time_s) {
@@ -341,6 +378,11 @@ void Renderer::move_waves(double time_s) {
     if (on_pass)
         on_pass("waves");
     waves_->move_to(time_s);
+    if (caustics_) {
+        sunlight_.on_pass = on_pass;
+        sunlight_.update(*waves_);
+        sunlight_.bind();
+    }
     const Heightfield& ground = scene_.ground;
     waves_->bind({ground.x_m(double(block_.base.x)), ground.y_m(double(block_.base.y))}, lift_m_);
     const bool was_under = under_water();
@@ -409,6 +451,12 @@ void Renderer::draw_tile() {
         begins("shadow");
         (wavy_ones ? wavy_ones->shadow : calm.shadow).use();
         glDispatchCompute(across, down, split ? 3 : 1);
+        glMemoryBarrier(images);
+    }
+    if (caustics_) {
+        begins("sunlit");
+        wavy_ones->sunlit.use();
+        glDispatchCompute(across, down, under_water() ? 2 : 1);
         glMemoryBarrier(images);
     }
     begins("shade");

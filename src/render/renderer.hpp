@@ -5,6 +5,7 @@
 #include "gpu/objects.hpp"
 #include "gpu/shader.hpp"
 #include "render/field_bounds.hpp"
+#include "render/sunlight.hpp"
 #include "render/waves.hpp"
 #include "scene/settings.hpp"
 
@@ -79,6 +80,9 @@ public:
     const WaveField* waves() const { return wavy() ? &*waves_ : nullptr; }
     WaveField* waves() { return wavy() ? &*waves_ : nullptr; }
 
+    /// Sunlight below the waves of the last prepare(), where there is any.
+    const SunlightVolume* sunlight() const { return caustics_ ? &sunlight_ : nullptr; }
+
     /// Called before each pass with its name, and with "end" after the last: for timing. May be
     /// empty.
     std::function<void(const char*)> on_pass;
@@ -98,12 +102,14 @@ private:
     };
     /// Those that know of waves, and the one that shades: a calm scene's programs hold none of it.
     struct WavyPasses {
-        gpu::ComputeProgram primary, surface, secondary, shadow, shade;
+        gpu::ComputeProgram primary, surface, secondary, shadow, sunlit, shade;
     };
 
     void upload_scene();
     void use_shade();
     std::string haze_defines() const;
+    std::string sunlight_defines() const;
+    void prepare_sunlight(const scene::View& view);
     void use_walk(scene::Walk walk, double setting);
     std::string walk_file() const;
     void prepare_waves(const scene::View& view);
@@ -131,10 +137,15 @@ private:
     std::map<scene::Walk, WalkPasses> passes_;
     std::map<std::pair<scene::Walk, std::string>, WavyPasses> wavy_passes_;
     std::optional<WaveField> waves_;
+    SunlightVolume sunlight_;
+    bool caustics_ = false; ///< waves focus the sun's light in this picture
+    int shaft_steps_ = 0;   ///< places along a view that shafts of light are looked up at; 0: none
     gpu::Texture2D water_;               ///< the water's table (scene/water_colour.hpp) ...
     std::optional<bool> water_spectral_; ///< ... as it was made last
+    gpu::Texture2D sunlit_;   ///< how waves focus the light of each part, with caustics only
     gpu::Texture2D surfaces_; ///< of the water met, for the passes after the first; with waves only
     double top_m_ = 0.0, water_top_m_ = 0.0; ///< highest node, above z = 0; highest level
+    double deepest_m_ = 0.0; ///< water of the scene
     glm::dvec3 camera_m_{0.0};
     bool in_slab_ =
         false;            ///< rays may enter the slab of a lake's waves from its side, and leave it

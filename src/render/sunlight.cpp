@@ -64,6 +64,7 @@ void SunlightVolume::set(const waves::Sea& sea, const SunlightSettings& settings
         tiles_ = gpu::TextureLayers(GL_RG16F, side, layers, "sunlight");
         const std::size_t texels =
             std::size_t(side) * std::size_t(side) * std::size_t(layers);
+        flux_texels_ = texels;
         flux_ = gpu::Buffer(texels * sizeof(GLuint), nullptr);
         bytes_ = texels * (4 + 4 * 4 / 3);
     }
@@ -101,11 +102,15 @@ void SunlightVolume::set(const waves::Sea& sea, const SunlightSettings& settings
 }
 
 const SunlightVolume::Passes& SunlightVolume::passes() {
-    if (const auto known = passes_.find(settings_.method); known != passes_.end())
+    const auto key = std::pair(settings_.method, settings_.photons);
+    if (const auto known = passes_.find(key); known != passes_.end())
         return known->second;
     const auto root = gpu::shader_root();
     const int number = int(settings_.method) - int(scene::Caustics::splat);
-    const std::string defined = text("#define TARN_SUNLIGHT_METHOD ", number, "\n");
+    const std::string defined = text("#define TARN_SUNLIGHT_METHOD ", number,
+                                     "\n#define TARN_SUNLIGHT_PHOTONS ",
+                                     settings_.method == scene::Caustics::splat ? settings_.photons : 1,
+                                     "\n");
     const std::string from_flux =
         std::string("#define TARN_SUNLIGHT_FROM_FLUX 1\n") +
         (settings_.method == scene::Caustics::photon_map ? "#define TARN_SUNLIGHT_BILATERAL 1\n"
@@ -114,7 +119,8 @@ const SunlightVolume::Passes& SunlightVolume::passes() {
         return gpu::ComputeProgram(gpu::load_shader(root, name, {}, words));
     };
     return passes_
-        .emplace(settings_.method, Passes{pass("passes/sunlight_photons.comp", defined),
+        .emplace(key, Passes{pass("passes/sunlight_clear.comp", ""),
+                                          pass("passes/sunlight_photons.comp", defined),
                                           pass("passes/sunlight_tiles.comp", from_flux),
                                           pass("passes/sunlight_tiles.comp", "")})
         .first->second;
@@ -129,10 +135,12 @@ void SunlightVolume::update(const WaveField& waves) {
     };
     const Passes& pass = passes();
     begins("sunlight");
-    glClearNamedBufferData(flux_.id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     glBindBufferBase(GL_UNIFORM_BUFFER, TARN_BLOCK_SUNLIGHT, block_buffer_.id());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_SUNLIGHT, flux_.id());
+    pass.clear.use();
+    const GLuint groups_of_1024 = GLuint((flux_texels_ + 1023) / 1024);
+    glDispatchCompute(std::min<GLuint>(groups_of_1024, 1024), (groups_of_1024 + 1023) / 1024, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     waves.bind_textures();
     pass.photons.use();
     const glm::dvec3& s = settings_.sun;
@@ -140,7 +148,10 @@ void SunlightVolume::update(const WaveField& waves) {
     glUniform1i(1, side_);
     glUniform1i(2, settings_.schlick);
     glUniform4i(3, needed_.x, needed_.y, needed_.z, needed_.w);
-    glDispatchCompute(groups_of_8(wave_texels_), groups_of_8(wave_texels_), GLuint(cascades_));
+    const GLuint groups = settings_.method == scene::Caustics::splat
+                              ? GLuint(wave_texels_ * settings_.photons / 32)
+                              : groups_of_8(wave_texels_);
+    glDispatchCompute(groups, groups, GLuint(cascades_));
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     begins("sunlight tiles");
     int source = -1; // level

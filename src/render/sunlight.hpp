@@ -23,7 +23,8 @@ struct SunlightSettings {
     bool schlick = false;
     scene::Caustics method = scene::Caustics::splat; ///< not `off`
     int texels = 0;              ///< a side of a tile: a power of two, at most the waves'; 0: half of theirs
-    int slices = 20;             ///< depths of each cascade, [2, 64]
+    int photons = 1;             ///< of `splat`, on a side of a texel of the waves: 1, 2 or 4
+    int slices = 14;             ///< depths of each cascade, [2, 64]
     double deepest_m = 1e9;      ///< no light is looked for below
     friend bool operator==(const SunlightSettings&, const SunlightSettings&) = default;
 };
@@ -54,7 +55,7 @@ public:
 
 private:
     struct Passes {
-        gpu::ComputeProgram photons, tiles, levels;
+        gpu::ComputeProgram clear, photons, tiles, levels;
     };
     const Passes& passes();
 
@@ -64,8 +65,8 @@ private:
     int cascades_ = 0, side_ = 0, wave_texels_ = 0;
     gpu::Buffer flux_, block_buffer_;
     gpu::TextureLayers tiles_;
-    std::map<scene::Caustics, Passes> passes_;
-    std::size_t bytes_ = 0;
+    std::map<std::pair<scene::Caustics, int>, Passes> passes_;
+    std::size_t flux_texels_ = 0, bytes_ = 0;
 };
 
 /// How strongly waves bend the sun's light: variance of the curvature of a cascade's surface

@@ -2,7 +2,8 @@
 // needs OpenGL 4.5 and EGL, no GDAL and no OpenImageIO, so it runs on a bare GPU machine.
 //
 //   tarn_frame_bench [--side N,N,...] [--size WxH,WxH,...] [--view high,shore,dive]
-//                    [--intersection METHOD] [--wind M/S] [--frames N] [--json FILE] [--ppm PREFIX]
+//                    [--intersection METHOD] [--wind M/S] [--caustics METHOD] [--caustic-texels N] [--caustic-photons N]
+//                    [--shaft-steps N] [--frames N] [--json FILE] [--ppm PREFIX]
 #include "bench/timing.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
@@ -53,6 +54,8 @@ int run(int argc, char** argv) {
     std::string json_path, ppm, method = scene::walk_methods().front().name;
     int frames = 41;
     double wind = 0.0; // m/s; 0: calm
+    std::string caustics = "splat";
+    int caustic_texels = 0, caustic_photons = 1, shaft_steps = 8;
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
         if (i + 1 >= argc)
@@ -66,6 +69,14 @@ int run(int argc, char** argv) {
             views = value;
         else if (word == "--intersection")
             method = value;
+        else if (word == "--caustics")
+            caustics = value;
+        else if (word == "--caustic-texels")
+            caustic_texels = std::atoi(value.c_str());
+        else if (word == "--caustic-photons")
+            caustic_photons = std::atoi(value.c_str());
+        else if (word == "--shaft-steps")
+            shaft_steps = std::atoi(value.c_str());
         else if (word == "--wind")
             wind = std::atof(value.c_str());
         else if (word == "--frames")
@@ -115,6 +126,12 @@ int run(int argc, char** argv) {
                     for (const scene::WalkMethod& m : scene::walk_methods())
                         if (method == m.name)
                             view.settings.walk = m.walk;
+                    view.settings.caustic_texels = caustic_texels;
+                    view.settings.caustic_photons = caustic_photons;
+                    view.settings.shaft_steps = shaft_steps;
+                    for (const scene::CausticsMethod& m : scene::caustics_methods())
+                        if (caustics == m.name)
+                            view.settings.caustics = m.caustics;
                     if (wind > 0.0) {
                         view.waves.model = waves::Model::jonswap;
                         view.waves.wind_m_per_s = wind;
@@ -132,6 +149,9 @@ int run(int argc, char** argv) {
                         side.c_str(), name.c_str(), size.c_str(), mode.name, t.median_ms, t.low_ms,
                         t.high_ms, t.clock);
                     json += text(first ? "\n" : ",\n", "{\"wind_m_per_s\": ", wind,
+                                 ", \"caustics\": \"", wind > 0.0 ? caustics : "off",
+                                 "\", \"caustic_texels\": ", caustic_texels, ", \"caustic_photons\": ", caustic_photons,
+                                 ", \"shaft_steps\": ", wind > 0.0 ? shaft_steps : 0,
                                  ", \"field\": ", side, ", \"intersection\": \"", method,
                                  "\", \"view\": \"", name, "\", \"width\": ", w,
                                  ", \"height\": ", h, ", \"mode\": \"", mode.name,

@@ -1,0 +1,197 @@
+// How near the ways to gather sunlight below waves come to many photons, and what each costs: figures and plots of
+// docs/physics/caustics.md. Writes data files and pictures for scripts/caustic-study.
+//
+//   tarn_caustic_study FOLDER
+#include "bench/timing.hpp"
+#include "core/error.hpp"
+#include "core/text.hpp"
+#include "gpu/context.hpp"
+#include "reference/caustics.hpp"
+#include "render/sunlight.hpp"
+#include "scene/samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <glm/geometric.hpp>
+#include <iostream>
+#include <memory>
+
+using namespace tarn;
+
+namespace {
+
+glm::dvec3 sun_at(double elevation_deg) {
+    const double e = elevation_deg * M_PI / 180.0, a = 200.0 * M_PI / 180.0;
+    return {std::cos(e) * std::sin(a), std::cos(e) * std::cos(a), std::sin(e)};
+}
+
+waves::Sea sea_of(double wind_m_per_s, int texels = 512) {
+    static const scene::Scene tank = scene::tank();
+    waves::Settings s;
+    s.model = waves::Model::jonswap;
+    s.wind_m_per_s = wind_m_per_s;
+    s.fetch_m = 3000.0;
+    s.depth_m = 20.0;
+    s.texels = texels;
+    waves::Sea sea = waves::make_sea(tank.ground, tank.water, tank.lakes, s);
+    std::fill(sea.amplitude.values.begin(), sea.amplitude.values.end(),
+              std::array<std::uint8_t, 4>{255, 255, 255, 255});
+    return sea;
+}
+
+reference::SurfaceFunction surface_of(const waves::Sea& sea) {
+    const auto fields = std::make_shared<reference::WaveSurface>(sea, 0.0);
+    return [fields](glm::dvec2 p) {
+        return reference::SurfacePoint{fields->height_m(p, 1e3), fields->slope(p, 1e3)};
+    };
+}
+
+struct Likeness {
+    double l1, contrast, expected_contrast, mean;
+};
+
+Likeness compare(const std::vector<float>& got, const std::vector<double>& expected) {
+    double off = 0.0, mean = 0.0, m2 = 0.0, g = 0.0, g2 = 0.0;
+    for (std::size_t i = 0; i < got.size(); ++i) {
+        off += std::abs(got[i] - expected[i]);
+        mean += expected[i];
+        m2 += expected[i] * expected[i];
+        g += got[i];
+        g2 += double(got[i]) * got[i];
+    }
+    const double n = double(got.size());
+    mean /= n;
+    g /= n;
+    return {off / n / mean, std::sqrt(std::max(g2 / n - g * g, 0.0)) / g,
+            std::sqrt(std::max(m2 / n - mean * mean, 0.0)) / mean, g};
+}
+
+void write_pfm(const std::filesystem::path& path, const std::vector<double>& values, int side) {
+    std::ofstream out(path, std::ios::binary);
+    out << "Pf\n" << side << " " << side << "\n-1.0\n";
+    for (const double v : values) {
+        const float f = float(v);
+        out.write(reinterpret_cast<const char*>(&f), 4);
+    }
+}
+
+/// Each method's tiles of one cascade against photons by the thousand.
+void methods(const std::filesystem::path& folder) {
+    std::ofstream data(folder / "methods.dat");
+    std::cout << "| method | texels a side | depth [m] | contrast | of photons | off (relative L1) | mean |\n"
+                 "| --- | --- | --- | --- | --- | --- | --- |\n";
+    const int cascade = 1;
+    const glm::dvec3 sun = sun_at(50.0);
+    const waves::Sea sea = sea_of(4.0);
+    waves::Sea one = sea;
+    one.cascades = {sea.cascades[cascade]};
+    const waves::Cascade& own = one.cascades[0];
+    const auto surface = reference::tabulated(surface_of(one), {0, 0}, own.patch_m, 2048);
+    render::WaveField field;
+    field.set(sea);
+    field.move_to(0.0);
+    for (const int side : {128, 256}) {
+        std::map<int, std::vector<double>> photons; // by slice
+        for (const scene::CausticsMethod& method : scene::caustics_methods()) {
+            if (method.caustics == scene::Caustics::off || (std::getenv("M") && method.name != std::string(std::getenv("M"))))
+                continue;
+            render::SunlightVolume tiles;
+            tiles.set(sea, {.sun = sun, .method = method.caustics, .texels = side, .photons = std::getenv("P") ? std::atoi(std::getenv("P")) : 1, .slices = 20});
+            tiles.update(field);
+            for (const int slice : {3, 8, 11, 15}) {
+                const double depth = tiles.slice_depth_m(cascade, slice);
+                if (!photons.count(slice))
+                    photons[slice] = reference::sunlight_by_photons(
+                        surface, {.sun = sun, .photons_a_side = 2048 / side},
+                        {.corner_m = glm::dvec2(-0.5 * own.texel_m()), .side_m = own.patch_m, .texels = side},
+                        depth);
+                const Likeness l = compare(tiles.read(cascade, slice), photons[slice]);
+                std::cout << "| " << method.name << " | " << side << " | " << fixed(depth, 2) << " | "
+                          << fixed(l.contrast, 3) << " | " << fixed(l.expected_contrast, 3) << " | "
+                          << fixed(l.l1, 4) << " | " << fixed(l.mean, 4) << " |\n";
+                data << method.name << " " << side << " " << depth << " " << l.l1 << "\n";
+            }
+        }
+    }
+}
+
+/// The product of the cascades' tiles as a picture looks it up, against photons through all the waves together.
+void whole_sea(const std::filesystem::path& folder) {
+    std::cout << "\n| wind [m/s] | depth [m] | contrast | of photons | off (relative L1) | mean |\n"
+                 "| --- | --- | --- | --- | --- | --- |\n";
+    const glm::dvec3 sun = sun_at(50.0);
+    for (const double wind : {4.0}) {
+        const waves::Sea sea = sea_of(wind);
+        render::WaveField field;
+        field.set(sea);
+        field.move_to(0.0);
+        field.bind({0.0, 0.0}, 0.5);
+        render::SunlightVolume tiles;
+        tiles.set(sea, {.sun = sun, .texels = std::getenv("T") ? std::atoi(std::getenv("T")) : 0, .slices = std::getenv("K") ? std::atoi(std::getenv("K")) : 20});
+        tiles.update(field);
+        tiles.bind();
+        const gpu::ComputeProgram look(gpu::expand_shader(
+            gpu::shader_root(),
+            "#version 450 core\n" + field.defines() +
+                "#include \"lib/waves.glsl\"\n#include \"lib/caustics.glsl\"\n"
+                "layout(local_size_x = 8, local_size_y = 8) in;\n"
+                "layout(binding = TARN_TEXTURE_SUNLIGHT) uniform sampler2DArray tiles;\n"
+                "layout(binding = TARN_BLOCK_SUNLIGHT, std140) uniform Sunlight { SunlightBlock light; };\n"
+                "layout(binding = TARN_BLOCK_WAVES, std140) uniform Waves { WaveBlock waves; };\n"
+                "layout(binding = 0, std430) writeonly buffer Out { float result[]; };\n"
+                "layout(location = 0) uniform vec4 square;\n" // side, depth, texels
+                "void main() { ivec2 at = ivec2(gl_GlobalInvocationID.xy);\n"
+                "vec2 place = (vec2(at) + 0.5) * square.x / square.z + square.y * light.beam.xy;\n"
+                "result[at.y * int(square.z) + at.x] = sun_focus(tiles, light, waves, place, square.y, vec4(1.0),"
+                " square.x / square.z); }\n",
+            "<look>"));
+        for (const double depth : {0.5, 1.0, 2.0}) {
+            const int texels = 128;
+            const double side = std::clamp(depth, 1.0, 8.0);
+            const gpu::Buffer out(texels * texels * sizeof(float), nullptr);
+            glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, out.id());
+            look.use();
+            glUniform4f(0, float(side), float(depth), float(texels), 0.0f);
+            glDispatchCompute(texels / 8, texels / 8, 1);
+            glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+            std::vector<float> got(texels * texels);
+            glGetNamedBufferSubData(out.id(), 0, GLsizeiptr(got.size() * sizeof(float)), got.data());
+            // Photons come from beside the square, too: the surface is tabulated around it.
+            const double around = side + depth * 0.5 + 1.0;
+            const glm::dvec2 corner(-0.5 * (around - side));
+            const auto surface = reference::tabulated(surface_of(sea), corner, around,
+                                                      std::min(1024, int(around / 0.004)));
+            const auto expected = reference::sunlight_by_photons(
+                surface, {.sun = sun, .disc_rad = scene::sun_radius_rad, .photons_a_side = 10, .steepest = 0.6},
+                {.corner_m = {0, 0}, .side_m = side, .texels = texels, .periodic = false}, depth);
+            const Likeness l = compare(got, expected);
+            std::cout << "| " << fixed(wind, 0) << " | " << fixed(depth, 1) << " | " << fixed(l.contrast, 3)
+                      << " | " << fixed(l.expected_contrast, 3) << " | " << fixed(l.l1, 3) << " | "
+                      << fixed(l.mean, 3) << " |" << std::endl;
+            write_pfm(folder / text("sea_", wind, "_", depth, "_photons.pfm"), expected, texels);
+            write_pfm(folder / text("sea_", wind, "_", depth, "_tiles.pfm"),
+                      std::vector<double>(got.begin(), got.end()), texels);
+        }
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv) try {
+    if (argc < 2) {
+        std::cerr << "usage: tarn_caustic_study FOLDER\n";
+        return 2;
+    }
+    const gpu::Context context;
+    const std::string only = argc > 2 ? argv[2] : "";
+    if (only != "sea")
+        methods(argv[1]);
+    if (only != "methods")
+        whole_sea(argv[1]);
+    return 0;
+} catch (const std::exception& e) {
+    std::cerr << e.what() << "\n";
+    return 1;
+}
