@@ -33,6 +33,26 @@ float focus_at(vec2 at_m, float depth_m, float footprint_m) {
 }
 
 #if TARN_SHAFTS > 0
+shared vec2 found[64]; // focus and length of each pixel's way, < 0: none
+
+// Bayer's order of a square of 4 x 4 pixels, in sixteenths.
+float order_of(ivec2 pixel) {
+    ivec2 low = pixel & 1, high = pixel >> 1 & 1;
+    return float(4 * (2 * (low.x ^ low.y) + low.y) + 2 * (high.x ^ high.y) + high.y) / 16.0;
+}
+
+// What sixteen pixels around one found, those that look at least a tenth farther or less far left out.
+float shared_focus(float length_m) {
+    ivec2 local = ivec2(gl_LocalInvocationID.xy), first = clamp(local - 1, ivec2(0), ivec2(4));
+    vec2 sum = vec2(0.0);
+    for (int i = 0; i < 16; ++i) {
+        vec2 other = found[8 * (first.y + (i >> 2)) + first.x + (i & 3)];
+        if (abs(other.y - length_m) <= 0.1 * length_m)
+            sum += vec2(other.x, 1.0);
+    }
+    return sum.x / sum.y;
+}
+
 // Mean of the waves' focus over what the sun's light scatters into a part of the view, 1 in still water: shafts of
 // light. Places along the way are drawn by what they bring to the eye, one from each of some equal shares of that.
 //
@@ -50,9 +70,8 @@ float shaft_focus(Part part, float depth_m, float sink, float slant, float befor
                  log(max(dot(luminance, transmittance(water, view.water, whole)), 1e-12) /
                      max(dot(luminance, image_transmittance(water, view.water, whole)), 1e-12)); // 1/m of path
     float last = exp(-fall * length_m);
-    // Interleaved gradient noise (Jimenez 2014), turned from sample to sample by the golden ratio.
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + view.tile.xy;
-    float lot = fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715))) + 0.61803399 * view.offset.z);
+    // Sixteen pixels side by side look at places of their own, and share what they find.
+    float lot = order_of(ivec2(gl_LocalInvocationID.xy)) + fract(0.5 + 0.61803399 * view.offset.z) / 16.0;
     float sum = 0.0;
     for (int i = 0; i < TARN_SHAFTS; ++i) {
         float share = (float(i) + lot) / float(TARN_SHAFTS);
@@ -65,38 +84,55 @@ float shaft_focus(Part part, float depth_m, float sink, float slant, float befor
 }
 #endif
 
+// The part that a slot is for, and where it ends. Returns whether there is one.
+bool part_of_slot(ivec2 local, int slot, out Part part, out End end, out float before_m, out float water_m) {
+    part = camera_part(view, local + view.tile.xy);
+    end = unpack_end(imageLoad(hits[0], local));
+    before_m = water_m = 0.0;
+    bool from_water = part.in_water;
+    int number = slot == 1 ? 1 : from_water ? 0 : 2;
+    if (number == 0)
+        return true;
+    if ((end.flags & end_surface) == 0u)
+        return false;
+    WaveSurface met = unpack_surface(imageLoad(surfaces, local));
+    Surface surface = Surface(slope_of_part(met, number, from_water, local + view.tile.xy, view.offset.z, part.direction,
+                                            view.optics.x),
+                              surface_level(heights, view, part, end));
+    before_m = end.t;
+    water_m = from_water ? end.t : 0.0;
+    part = split_part(view, part, end, surface, number);
+    if (!wanted(view, part, number))
+        return false;
+    end = unpack_end(number == 1 ? imageLoad(hits[1], local) : imageLoad(hits[2], local));
+    return true;
+}
+
 void main() {
     ivec2 local = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(local, view.tile.zw)))
-        return;
     int slot = int(gl_GlobalInvocationID.z);
-    Part first = camera_part(view, local + view.tile.xy);
-    End end = unpack_end(imageLoad(hits[0], local));
-    int number = slot == 1 ? 1 : first.in_water ? 0 : 2;
-    if (slot == 1 && !first.in_water)
-        return;
-    Part part = first;
-    float before_m = 0.0, water_m = 0.0;
-    if (number > 0) {
-        if ((end.flags & end_surface) == 0u)
-            return;
-        WaveSurface met = unpack_surface(imageLoad(surfaces, local));
-        Surface surface = Surface(slope_of_part(met, number, first.in_water, local + view.tile.xy, view.offset.z,
-                                                first.direction, view.optics.x),
-                                  surface_level(heights, view, first, end));
-        before_m = end.t;
-        water_m = first.in_water ? end.t : 0.0;
-        part = split_part(view, first, end, surface, number);
-        if (!wanted(view, part, number))
-            return;
-        end = unpack_end(number == 1 ? imageLoad(hits[1], local) : imageLoad(hits[2], local));
-    }
+    Part part;
+    End end;
+    float before_m, water_m;
+    bool mine = all(lessThan(local, view.tile.zw)) && part_of_slot(local, slot, part, end, before_m, water_m);
     vec2 both = vec2(1.0);
-    float depth = depth_of(part), sink = -part.direction.z;
-    if ((end.flags & end_ground) != 0u)
-        both.x = focus_at(place_of(part, end.t), max(depth + sink * end.t, 0.0), view.camera.w * (before_m + end.t));
+    float depth = 0.0, sink = 0.0;
+    if (mine) {
+        depth = depth_of(part);
+        sink = -part.direction.z;
+        if ((end.flags & end_ground) != 0u)
+            both.x = focus_at(place_of(part, end.t), max(depth + sink * end.t, 0.0), view.camera.w * (before_m + end.t));
+    }
 #if TARN_SHAFTS > 0
-    both.y = shaft_focus(part, depth, sink, 1.0 / sun_below(view.sun.xyz, view.optics.x).z, water_m, end.t, before_m);
+    vec2 own = vec2(1.0, -1e9);
+    if (mine)
+        own = vec2(shaft_focus(part, depth, sink, 1.0 / sun_below(view.sun.xyz, view.optics.x).z, water_m, end.t, before_m),
+                   end.t);
+    found[gl_LocalInvocationIndex] = own;
+    barrier();
+    if (mine)
+        both.y = shared_focus(own.y);
 #endif
-    imageStore(sunlit_image, local + ivec2(0, slot * view.tile.w), uvec4(packHalf2x16(both)));
+    if (mine)
+        imageStore(sunlit_image, local + ivec2(0, slot * view.tile.w), uvec4(packHalf2x16(both)));
 }

@@ -71,7 +71,8 @@ struct RenderSettings {
     Caustics caustics = Caustics::splat;
     int caustic_texels = 0; ///< a side of a tile of them; 0: half the waves', else a power of two, [16, 2048]
     int caustic_photons = 1; ///< of `splat`, on a side of a texel of the waves: 1, 2 or 4
-    int shaft_steps = 8; ///< places along a view in the water where shafts of light are looked up, [0, 256]; 0: none
+    int shaft_steps = 2; ///< places along a view in the water where each of sixteen pixels side by side
+                         ///< looks for shafts of light, [0, 256]; 0: none
     double least_transmittance = 0.002;  ///< underwater paths end where less is left, [1e-6, .5]
     std::optional<double> ground_albedo; ///< lab: one grey for all ground, [0, 1]
     Walk walk = Walk::cone_map;

@@ -55,7 +55,7 @@ int run(int argc, char** argv) {
     int frames = 41;
     double wind = 0.0; // m/s; 0: calm
     std::string caustics = "splat";
-    int caustic_texels = 0, caustic_photons = 1, shaft_steps = 8;
+    int caustic_texels = 0, caustic_photons = 1, shaft_steps = 2;
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
         if (i + 1 >= argc)
