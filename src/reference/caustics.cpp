@@ -130,4 +130,110 @@ std::vector<double> sunlight_by_photons(const SurfaceFunction& surface, const Ph
     return sum;
 }
 
+SunTiles::SunTiles(const waves::Sea& sea, double time_s, const PhotonLight& light,
+                   double deepest_m) {
+    const auto lean = [&](glm::dvec2 slope) {
+        return photon_below(light.sun, slope, light.index, light.schlick).lean;
+    };
+    beam_ = lean({0, 0});
+    const double step = 1e-4;
+    const glm::dvec2 by_x = (lean({step, 0}) - lean({-step, 0})) / (2.0 * step);
+    const glm::dvec2 by_y = (lean({0, step}) - lean({0, -step})) / (2.0 * step);
+    const double bend2 = 0.5 * (glm::dot(by_x, by_x) + glm::dot(by_y, by_y));
+    const double disc = light.disc_rad / light.index;
+    disc_variance_ = 0.25 * disc * disc * (1.0 + glm::dot(beam_, beam_));
+    const waves::SlopeCovariance& r = sea.roughness;
+    rough_variance_ = 0.5 * (r.xx * glm::dot(by_x, by_x) + 2.0 * r.xy * glm::dot(by_x, by_y) +
+                             r.yy * glm::dot(by_y, by_y));
+    for (std::size_t j = 0; j < sea.cascades.size(); ++j) {
+        const waves::Cascade& c = sea.cascades[j];
+        Cascade out{.patch_m = c.patch_m,
+                    .first_m = 1.0,
+                    .slices_a_doubling = 2.5,
+                    .lean_variance = 0.5 * bend2 * c.moments.slope(),
+                    .window = c.window,
+                    .corner_m = c.corner_m,
+                    .slices = {}};
+        if (!c.ripples) {
+            finest_ = j;
+            waves::Sea one = sea;
+            one.cascades = {c};
+            one.sines.clear();
+            std::fill(one.amplitude.values.begin(), one.amplitude.values.end(),
+                      std::array<std::uint8_t, waves::most_cascades>{255, 255, 255, 255});
+            const WaveSurface surface(one, time_s);
+            const auto table = tabulated(
+                [&](glm::dvec2 p) {
+                    return SurfacePoint{surface.height_m(p, 1e6), surface.slope(p, 1e6)};
+                },
+                {0, 0}, c.patch_m, c.texels);
+            // Depth where the waves focus, by the curvature of the surface itself.
+            double curvature = 0.0;
+            const double h = c.texel_m();
+            for (int k = 0; k < 4096; ++k) {
+                const glm::dvec2 p(c.patch_m * (k % 64) / 64.0, c.patch_m * (k / 64) / 64.0);
+                const double xx =
+                    (table(p + glm::dvec2(h, 0)).slope.x - table(p - glm::dvec2(h, 0)).slope.x) /
+                    (2.0 * h);
+                const double yy =
+                    (table(p + glm::dvec2(0, h)).slope.y - table(p - glm::dvec2(0, h)).slope.y) /
+                    (2.0 * h);
+                curvature += (xx + yy) * (xx + yy) / 4096.0;
+            }
+            const double focus = 1.0 / std::max(std::sqrt(bend2 * curvature), 1e-3);
+            side_ = c.texels / 2;
+            out.first_m = focus / 10.0;
+            const double doublings =
+                std::min(std::log2(200.0), std::log2(std::max(2.0 * deepest_m / out.first_m, 2.0)));
+            PhotonLight even = light;
+            even.disc_rad = 0.0; // blurred with the rest
+            even.photons_a_side = 4;
+            for (int k = 0; k <= int(std::ceil(doublings * out.slices_a_doubling)); ++k)
+                out.slices.push_back(sunlight_by_photons(
+                    table, even, {.corner_m = {0, 0}, .side_m = c.patch_m, .texels = side_},
+                    out.first_m * std::exp2(k / out.slices_a_doubling)));
+        }
+        cascades_.push_back(std::move(out));
+    }
+}
+
+double SunTiles::focus(glm::dvec2 at_m, double depth_m, const std::vector<double>& amplitude,
+                       const std::function<double()>& random) const {
+    const glm::dvec2 straight = at_m - depth_m * beam_;
+    double variance =
+        disc_variance_ + rough_variance_ * amplitude[finest_] * amplitude[finest_], product = 1.0;
+    for (std::size_t j = cascades_.size(); j-- > 0;) {
+        const Cascade& c = cascades_[j];
+        const double weak = amplitude[j] * depth_m;
+        if (!c.slices.empty() && weak > 0.0) {
+            // A normal draw on both axes (Box & Muller 1958).
+            const double radius =
+                depth_m * std::sqrt(variance) * std::sqrt(-2.0 * std::log(1.0 - random()));
+            const double turn = 6.283185307179586 * random();
+            const glm::dvec2 p =
+                (straight + radius * glm::dvec2(std::cos(turn), std::sin(turn))) / c.patch_m *
+                    double(side_) - 0.5;
+            const double place = std::clamp(std::log2(weak / c.first_m) * c.slices_a_doubling, 0.0,
+                                            double(c.slices.size()) - 1.001);
+            const double x0 = std::floor(p.x), y0 = std::floor(p.y);
+            const auto at = [&](std::size_t slice) {
+                const auto wrap = [this](double v) {
+                    return std::size_t(((long(v) % side_) + side_) % side_);
+                };
+                const auto value = [&](double x, double y) {
+                    return c.slices[slice][wrap(y) * std::size_t(side_) + wrap(x)];
+                };
+                return std::lerp(std::lerp(value(x0, y0), value(x0 + 1, y0), p.x - x0),
+                                 std::lerp(value(x0, y0 + 1), value(x0 + 1, y0 + 1), p.x - x0),
+                                 p.y - y0);
+            };
+            const std::size_t low = std::size_t(place);
+            const double value = std::lerp(at(low), at(low + 1), place - double(low));
+            product *= 1.0 + std::min(weak / c.first_m, 1.0) * (value - 1.0);
+        }
+        variance += c.lean_variance * amplitude[j] * amplitude[j];
+    }
+    return product;
+}
+
 } // namespace tarn::reference

@@ -54,4 +54,35 @@ struct PhotonLight {
 std::vector<double> sunlight_by_photons(const SurfaceFunction& surface, const PhotonLight& light,
                                         const SunlitSquare& square, double depth_m);
 
+/// The model that a picture uses, from photons in double precision: a product of what each cascade
+/// casts, blurred by the finer ones by chance (see shaders/lib/caustics.glsl). What it leaves out
+/// against all waves together is measured in docs/physics/caustics.md.
+class SunTiles {
+public:
+    /// @param time_s  of the waves
+    SunTiles(const waves::Sea& sea, double time_s, const PhotonLight& light, double deepest_m);
+
+    /// Sunlight on a horizontal plane against that below flat water, by one draw of the blur.
+    /// @param at_m       scene place
+    /// @param amplitude  share of each cascade's waves that is left where the light comes in
+    /// @param random     even in [0, 1)
+    double focus(glm::dvec2 at_m, double depth_m, const std::vector<double>& amplitude,
+                 const std::function<double()>& random) const;
+    /// Metres east and north that flat water's beam comes to a metre deeper.
+    glm::dvec2 beam() const { return beam_; }
+
+private:
+    struct Cascade {
+        double patch_m, first_m, slices_a_doubling, lean_variance;
+        bool window = false;
+        glm::dvec2 corner_m{0.0};
+        std::vector<std::vector<double>> slices;
+    };
+    glm::dvec2 beam_;
+    double disc_variance_, rough_variance_;
+    int side_ = 64;
+    std::size_t finest_ = 0;
+    std::vector<Cascade> cascades_;
+};
+
 } // namespace tarn::reference

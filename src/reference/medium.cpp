@@ -49,6 +49,16 @@ glm::dvec3 Medium::transmittance(double path_m) const {
     return sum;
 }
 
+glm::dvec3 Medium::pattern_transmittance(double path_m) const {
+    constexpr double scattered_wide = 0.6; // as in medium.glsl: Petzold's share beyond 2.5 degrees
+    const glm::dvec3 all = transmittance(path_m), straight = image_transmittance(path_m);
+    glm::dvec3 out;
+    for (int k = 0; k < 3; ++k)
+        out[k] = all[k] * std::pow(std::clamp(straight[k] / std::max(all[k], 1e-9), 0.0, 1.0),
+                                   scattered_wide);
+    return out;
+}
+
 glm::dvec3 Medium::image_transmittance(double path_m) const {
     glm::dvec3 sum(0.0);
     for (const Wave& wave : waves_)

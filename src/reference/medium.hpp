@@ -20,6 +20,7 @@ public:
                              double distance_m) const;
     glm::dvec3 thrown_back(double depth_m) const;
     glm::dvec3 image_transmittance(double path_m) const;
+    glm::dvec3 pattern_transmittance(double path_m) const;
     /// Share of an even sky that a flat surface lets in, by integrating over the angles in air.
     double sky_entering() const { return sky_entering_; }
 

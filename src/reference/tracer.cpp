@@ -2,6 +2,7 @@
 
 #include "reference/air.hpp"
 #include "reference/camera.hpp"
+#include "reference/caustics.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/ground_colour.hpp"
 #include "reference/heightfield.hpp"
@@ -84,6 +85,14 @@ public:
                 waves_.emplace(sea_, view.waves.time_s);
                 raised_ = scene.water;
                 raised_.offset_m += waves_->bound_m();
+                const bool bent = settings_.caustics != scene::Caustics::off && sun.z > 0.0;
+                if (bent && !sea_.cascades.empty())
+                    tiles_.emplace(sea_, view.waves.time_s,
+                                   PhotonLight{.sun = sun,
+                                               .index = index_,
+                                               .schlick = settings_.fresnel == scene::Fresnel::schlick,
+                                               .disc_rad = scene::sun_radius_rad},
+                                   deepest_m(scene));
             }
         }
         const glm::dvec3& p = camera_.position;
@@ -107,6 +116,31 @@ public:
     }
 
 private:
+    static double deepest_m(const scene::Scene& scene) {
+        double deepest = 0.0;
+        const GridSize size = scene.water.size();
+        for (int r = 0; r < size.rows; ++r)
+            for (int c = 0; c < size.cols; ++c)
+                if (scene.water.codes[{c, r}] != no_water_code)
+                    deepest = std::max(deepest, scene.water.elevation_m(Node{c, r}) -
+                                                    scene.ground.elevation_m(Node{c, r}));
+        return deepest;
+    }
+
+    /// Sunlight at a place in the water against that below flat water, by some draws.
+    double focus_at(glm::dvec3 p, double depth, int draws) const {
+        std::uint64_t lot = lot_of(int(std::llround(p.x * 4096.0)), int(std::llround(p.y * 4096.0)),
+                                   int(std::llround(depth * 4096.0)));
+        std::minstd_rand random(std::uint32_t(lot % 2147483646u) + 1u);
+        std::uniform_real_distribution<double> even;
+        const std::vector<double> shares =
+            waves_->shares(glm::dvec2(p.x, p.y) - depth * tiles_->beam(), depth);
+        double sum = 0.0;
+        for (int k = 0; k < draws; ++k)
+            sum += tiles_->focus({p.x, p.y}, depth, shares, [&] { return even(random); });
+        return sum / draws;
+    }
+
     Split split(glm::dvec3 direction, const Meeting& at, bool from_water, Lot lot) const {
         glm::dvec2 slope = at.slope;
         if (waves_ && sea_.roughness.trace() > 0.0) {
@@ -364,8 +398,13 @@ private:
                     !blocked(from, sun_below_, up) && !blocked(top, light_.sun_direction, infinity);
             }
             if (lit)
-                irradiance += sun_irradiance_below_ * facing *
-                              medium_.transmittance(depth / sun_below_.z + water_m);
+            {
+                const double way = depth / sun_below_.z + water_m;
+                glm::dvec3 left = medium_.transmittance(way);
+                if (tiles_)
+                    left += (focus_at(hit.point, depth, 16) - 1.0) * medium_.pattern_transmittance(way);
+                irradiance += sun_irradiance_below_ * facing * left;
+            }
         }
         if (settings_.thrown_back)
             irradiance /= 1.0 - colour * medium_.thrown_back(depth);
@@ -452,9 +491,8 @@ private:
             light_.sky_irradiance * medium_.sky_entering() * sky_slant *
             medium_.path_radiance(sky_slant, depth, -direction.z, water_before_m, length);
         if (light_.sun_direction.z > 0.0)
-            out +=
-                sun_irradiance_below_ * medium_.path_radiance(1.0 / sun_below_.z, depth,
-                                                              -direction.z, water_before_m, length);
+            out += sun_irradiance_below_ *
+                   sun_scattered(origin, direction, depth, water_before_m, length);
         const double water_m = water_before_m + length;
         if (hit)
             return out + bed(*hit, lake.level_m, pixel_rad_ * (before_m + length), water_m);
@@ -473,6 +511,31 @@ private:
         return out;
     }
 
+    /// The sun's light that the water scatters into a part of the view, shafts and all.
+    glm::dvec3 sun_scattered(glm::dvec3 origin, glm::dvec3 direction, double depth, double before_m,
+                             double length) const {
+        const double slant = 1.0 / sun_below_.z, sink = -direction.z;
+        if (!tiles_ || settings_.shaft_steps == 0 || !(length > 0.0))
+            return medium_.path_radiance(slant, depth, sink, before_m, length);
+        constexpr int pieces = 24; // each longer than the one before it
+        const glm::dvec3 luminance(0.2126, 0.7152, 0.0722);
+        glm::dvec3 sum(0.0);
+        double from = 0.0;
+        for (int k = 0; k < pieces; ++k) {
+            const double to = length * std::pow((k + 1.0) / pieces, 2.0), t = 0.5 * (from + to);
+            const double deep = std::max(depth + sink * t, 0.0), way = slant * deep + before_m + t;
+            const double beam =
+                std::clamp(glm::dot(luminance, medium_.pattern_transmittance(way)) /
+                               std::max(glm::dot(luminance, medium_.transmittance(way)), 1e-12),
+                           0.0, 1.0);
+            sum += medium_.path_radiance(slant, std::max(depth + sink * from, 0.0), sink,
+                                         before_m + from, to - from) *
+                   (1.0 + (focus_at(origin + t * direction, deep, 1) - 1.0) * beam);
+            from = to;
+        }
+        return sum;
+    }
+
     const scene::Scene& scene_;
     const scene::Lighting& light_;
     const scene::RenderSettings& settings_;
@@ -487,6 +550,7 @@ private:
     std::optional<Lake> camera_lake_;
     waves::Sea sea_;
     std::optional<WaveSurface> waves_;
+    std::optional<SunTiles> tiles_; ///< of light that the waves focus
     Heightfield raised_; ///< the water, as high as its waves may come
 };
 

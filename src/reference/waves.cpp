@@ -173,6 +173,14 @@ double WaveSurface::finest_share(glm::dvec2 place, double depth_m) const {
     return std::clamp(depth_m / std::max(sea_.full_depth_m, 1e-6), 0.0, 1.0) * share(place, finest);
 }
 
+std::vector<double> WaveSurface::shares(glm::dvec2 place, double depth_m) const {
+    const double fade = std::clamp(depth_m / std::max(sea_.full_depth_m, 1e-6), 0.0, 1.0);
+    std::vector<double> out;
+    for (std::size_t j = 0; j < sea_.cascades.size(); ++j)
+        out.push_back(fade * share(place, j));
+    return out;
+}
+
 double WaveSurface::height_m(glm::dvec2 place, double depth_m) const {
     return sum(place, depth_m).height;
 }

@@ -32,6 +32,8 @@ public:
     double height_m(glm::dvec2 place_m, double depth_m) const;
     /// Rise per metre east and north; the fade's own slope is left out, as on the GPU.
     glm::dvec2 slope(glm::dvec2 place_m, double depth_m) const;
+    /// Share of each cascade's waves that is left there.
+    std::vector<double> shares(glm::dvec2 place_m, double depth_m) const;
     double bound_m() const { return bound_m_; }
     /// By which waves too short to be drawn are lower there: the finest cascade's share and the
     /// fade.
