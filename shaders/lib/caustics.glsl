@@ -62,7 +62,9 @@ float sun_focus(sampler2DArray tiles, SunlightBlock light, WaveBlock waves, vec2
         vec2 slice = slice_of_depth(light, j, amplitude[j] * depth_m);
         float first = floor(slice.x);
         vec2 two = textureLod(tiles, vec3(place, float(j) * light.beam.z + first), level).xy;
-        focus *= 1.0 + inside_patch(waves, j, place) * slice.y * (mix(two.x, two.y, slice.x - first) - 1.0);
+        // Wider than the coarsest level, a pixel sees ever more of the same.
+        float seen = slice.y * min(1.0, 0.25 * waves.patches[j].z / own.w * exp2(-level));
+        focus *= 1.0 + inside_patch(waves, j, place) * seen * (mix(two.x, two.y, slice.x - first) - 1.0);
         variance += own.z * amplitude[j] * amplitude[j];
     }
     return focus;

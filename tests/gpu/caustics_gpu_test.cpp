@@ -128,6 +128,7 @@ TEST(CausticsGpu, FlatWaterIsOne) {
 // Light only moves: at every depth the mean is that of the photons that enter, for seas from a breeze to a gale and
 // the sun from the zenith to a degree above the horizon.
 TEST(CausticsGpu, FluxIsConserved) {
+    double least[5] = {1, 1, 1, 1, 1}, most[5] = {1, 1, 1, 1, 1};
     for (const scene::Caustics method : all_methods)
         for (const double wind : {2.0, 6.0, 15.0})
             for (const double elevation : {90.0, 30.0, 1.0}) {
@@ -145,32 +146,127 @@ TEST(CausticsGpu, FluxIsConserved) {
                             EXPECT_NEAR(got, 1.0, 0.005)
                                 << int(method) << " wind " << wind << " sun " << elevation << " cascade "
                                 << j << " slice " << k;
-                        else
-                            std::printf("method %d wind %g sun %g cascade %d slice %d: %.3f\n", int(method), wind, elevation, j, k, got);
+                        else { // their loss is printed; see docs/physics/caustics.md
+                            least[int(method)] = std::min(least[int(method)], got);
+                            most[int(method)] = std::max(most[int(method)], got);
+                        }
                     }
                 }
             }
+    for (const scene::CausticsMethod& m : scene::caustics_methods())
+        std::printf("%s: %.3f to %.3f of the flux\n", m.name, least[int(m.caustics)],
+                    most[int(m.caustics)]);
+    // Its filter takes from the brightest texels.
+    EXPECT_GT(least[int(scene::Caustics::photon_map)], 0.8);
 }
 
+// Photons by the hundred a texel, in double precision through a cubic spline of FFTW's waves: the pattern of splat with
+// four photons to a texel of the waves on tiles a quarter as wide is within 3 % (relative L1) down to where the waves
+// focus, and within 6 % beyond, where what the photons themselves scatter by is a third of that. The others' figures
+// are in docs/physics/caustics.md.
 TEST(CausticsGpu, PatternAgreesWithManyPhotons) {
-    for (const scene::Caustics method : all_methods) {
-        for (const int texels : {256, 512}) {
-        Tiles t(sea_of(4.0, 512, 3), {.sun = sun_at(50.0), .method = method, .texels = texels});
-        for (int j = 1; j < 2; ++j) {
-            waves::Sea one = t.waves.sea();
-            const waves::Cascade own = one.cascades[j];
-            one.cascades = {own};
-            std::fill(one.amplitude.values.begin(), one.amplitude.values.end(),
-                      std::array<std::uint8_t, 4>{255, 255, 255, 255});
-            const auto surface = surface_of(one);
-            for (int k = 2; k < 20; k += 4) {
-                const double depth = t.sunlight.slice_depth_m(j, k);
-                const auto expected = reference::sunlight_by_photons(
-                    surface, {.sun = sun_at(50.0), .photons_a_side = 512 / texels * 3},
-                    {.corner_m = glm::dvec2(-0.5 * own.texel_m()), .side_m = own.patch_m, .texels = texels}, depth);
-                std::printf("method %d side %d cascade %d depth %.3f: L1 %.4f\n", int(method), texels, j, depth, relative_l1(t.sunlight.read(j, k), expected));
-            }
-        }
-        }
+    const glm::dvec3 sun = sun_at(50.0);
+    waves::Sea sea = sea_of(4.0, 256, 1);
+    sea.cascades[0].choppiness = 0.7;
+    std::fill(sea.amplitude.values.begin(), sea.amplitude.values.end(),
+              std::array<std::uint8_t, 4>{255, 255, 255, 255});
+    const waves::Cascade own = sea.cascades[0];
+    const auto surface = reference::tabulated(surface_of(sea), {0, 0}, own.patch_m, 512);
+    const Tiles t(sea, {.sun = sun, .texels = 64, .photons = 4});
+    for (const int slice : {2, 5, 8, 11}) {
+        const double depth = t.sunlight.slice_depth_m(0, slice);
+        const auto expected = reference::sunlight_by_photons(
+            surface, {.sun = sun, .photons_a_side = 24},
+            {.corner_m = glm::dvec2(-0.5 * own.texel_m()), .side_m = own.patch_m, .texels = 64}, depth);
+        const double off = relative_l1(t.sunlight.read(0, slice), expected);
+        std::printf("depth %.2f m: off by %.4f\n", depth, off);
+        EXPECT_LT(off, slice <= 5 ? 0.03 : 0.06) << depth;
     }
+}
+
+// One sine of a few centimetres: the sun overhead comes to a focus below its crests at n / ((n - 1) A k^2), and above
+// that the pattern is that of a one-dimensional lens, by quadrature.
+TEST(CausticsGpu, OneWaveFocusesWhereItShould) {
+    const double amplitude = 0.04, patch = 10.0, index = 1.333;
+    const int waves_a_patch = 4, texels = 512;
+    const double k = 2.0 * M_PI * waves_a_patch / patch;
+    const double focus = index / ((index - 1.0) * amplitude * k * k);
+    for (const scene::Caustics method : {scene::Caustics::splat, scene::Caustics::mesh}) {
+        const Tiles t(sea_of_one_wave(amplitude, waves_a_patch, patch, texels),
+                      {.sun = {0, 0, 1}, .method = method, .photons = 4, .slices = 64});
+        const int side = t.sunlight.side();
+        double brightest = 0.0, brightest_at = 0.0;
+        for (int slice = 0; slice < t.sunlight.slices_of(0); ++slice) {
+            const auto light = t.sunlight.read(0, slice);
+            const double most = *std::max_element(light.begin(), light.end());
+            const double depth = t.sunlight.slice_depth_m(0, slice);
+            if (most > brightest) {
+                brightest = most;
+                brightest_at = depth;
+            }
+            if (std::abs(depth / focus - 0.5) > 0.04)
+                continue;
+            std::vector<double> expected(std::size_t(side), 0.0);
+            const int rays = 400 * side;
+            for (int i = 0; i < rays; ++i) {
+                const double x = (i + 0.5) * patch / rays;
+                const reference::Photon p = reference::photon_below(
+                    {0, 0, 1}, {-amplitude * k * std::sin(k * x), 0.0}, index, false);
+                const double lands =
+                    x + 0.5 * patch / texels + (depth + amplitude * std::cos(k * x)) * p.lean.x;
+                const int at = int(std::floor(lands / patch * side));
+                expected[std::size_t((at + side) % side)] += p.share / 400.0;
+            }
+            double off = 0.0;
+            for (int x = 0; x < side; ++x)
+                off += std::abs(light[std::size_t(x)] - expected[std::size_t(x)]) / side;
+            EXPECT_LT(off, method == scene::Caustics::splat ? 0.015 : 0.03) << int(method) << " " << depth;
+        }
+        EXPECT_NEAR(brightest_at / focus, 1.0, 0.1) << int(method);
+        EXPECT_GT(brightest, 5.0) << int(method);
+    }
+}
+
+// What a picture looks up is 1 in the mean, near and far, shallow and deep, and fades to an even 1 where the pixel
+// is wider than the patches.
+TEST(CausticsGpu, FocusIsOneInTheMean) {
+    test_support::context();
+    waves::Sea sea = sea_of(5.0, 256, 3);
+    const Tiles t(sea, {.sun = sun_at(35.0)});
+    render::WaveField waves;
+    waves.set(sea);
+    waves.move_to(0.0);
+    waves.bind({12.0, -7.0}, 0.5);
+    t.sunlight.bind();
+    const test_support::GpuFunction focus(
+        "lib/waves.glsl", "result = vec4(sun_focus(tiles, light, waves, x.xy, x.z, vec4(y.x), x.w));",
+        "#include \"lib/caustics.glsl\"\n"
+        "layout(binding = TARN_TEXTURE_SUNLIGHT) uniform sampler2DArray tiles;\n"
+        "layout(binding = TARN_BLOCK_SUNLIGHT, std140) uniform Sunlight { SunlightBlock light; };\n"
+        "layout(binding = TARN_BLOCK_WAVES, std140) uniform Waves { WaveBlock waves; };\n",
+        waves.defines());
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> even(-2000.0f, 2000.0f);
+    for (const float depth : {0.0f, 0.1f, 0.5f, 2.0f, 8.0f, 30.0f})
+        for (const float footprint : {0.0f, 0.3f, 500.0f})
+            for (const float amplitude : {1.0f, 0.3f}) {
+                std::vector<glm::vec4> x, y;
+                for (int i = 0; i < 100'000; ++i) {
+                    x.emplace_back(even(random), even(random), depth, footprint);
+                    y.emplace_back(amplitude, 0, 0, 0);
+                }
+                const auto got = focus(x, y);
+                double sum = 0.0, most = 0.0;
+                for (const glm::vec4& v : got) {
+                    sum += v.x;
+                    most = std::max(most, std::abs(double(v.x) - 1.0));
+                    ASSERT_GE(v.x, 0.0f);
+                }
+                EXPECT_NEAR(sum / double(got.size()), 1.0, 0.02)
+                    << depth << " " << footprint << " " << amplitude;
+                if (depth == 0.0f)
+                    EXPECT_LT(most, 1e-6);
+                if (footprint == 500.0f)
+                    EXPECT_LT(most, 0.05) << depth;
+            }
 }

@@ -71,7 +71,7 @@ TEST(WavePictures, APatchIsAsBrightResolvedAsItIsInOnePixel) {
                     const double s = std::max(elevation, 12.0) * M_PI / 180.0;
                     view.lighting =
                         scene::clear_sky({0.0, (opposite ? 1 : -1) * std::cos(s), std::sin(s)});
-                    view.settings = {.samples = 1, .refraction = false};
+                    view.settings = {.samples = 1, .refraction = false, .caustics = scene::Caustics::off};
                     view.waves = wind(speed);
                     view.waves.choppiness = choppiness;
                     view.camera = towards_middle(elevation, 800.0, elevation < 15 ? 1.0 : 2.0);
