@@ -38,7 +38,7 @@ Photon photon_below(vec3 sun, vec2 slope, float index, bool schlick) {
 //                  above the first it grows with depth.
 vec2 slice_of_depth(SunlightBlock light, int cascade, float depth_m) {
     float ratio = depth_m / light.cascades[cascade].x;
-    return vec2(clamp(log2(max(ratio, 1e-9)) * light.cascades[cascade].y, 0.0, light.beam.z - 1.001), min(ratio, 1.0));
+    return vec2(clamp(log2(max(ratio, 1e-9)) * light.cascades[cascade].y, 0.0, light.last[cascade] - 0.001), min(ratio, 1.0));
 }
 
 #ifdef TARN_WAVES

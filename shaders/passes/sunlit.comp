@@ -59,12 +59,15 @@ float shared_focus(float length_m) {
 //   slant   path of sunlight per metre of depth
 float shaft_focus(Part part, float depth_m, float sink, float slant, float before_m, float length_m, float path_m) {
     const vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
-    // All light has come a path that grows evenly: how fast what it brings falls, by its fall over the first mean path.
+    // All light has come a path that grows evenly: how fast what it brings falls, by its fall to about a third.
     float rate = 1.0 + slant * sink, start = slant * depth_m + before_m;
-    float typical = min(length_m, 1.0 / max(view.water.z, 1e-3));
-    float here = dot(luminance, water_row(water, view.water, 2, start));
-    float there = dot(luminance, water_row(water, view.water, 2, start + rate * typical));
-    float fall = log(max(here, 1e-12) / max(there, 1e-12)) / typical; // 1/m of the part; < 0 for a steep view upwards
+    float here = log(max(dot(luminance, water_row(water, view.water, 2, start)), 1e-12));
+    float typical = min(length_m, 1.0 / max(view.water.z, 1e-3)), fall; // 1/m of the part; < 0 for a steep view upwards
+    for (int i = 0; i < 3; ++i) {
+        float there = log(max(dot(luminance, water_row(water, view.water, 2, max(start + rate * typical, 0.0))), 1e-12));
+        fall = (here - there) / typical;
+        typical = min(length_m, 1.0 / max(abs(fall), 1e-3));
+    }
     float whole = max(start + 0.5 * rate * typical, 1e-3);
     float beam = scattered_wide / whole *
                  log(max(dot(luminance, transmittance(water, view.water, whole)), 1e-12) /

@@ -19,11 +19,12 @@ struct SunlightBlock {
     vec4 beam;        // xy: metres east and north that flat water's beam comes to a metre deeper, z: slices of a
                       // cascade, w: variance of that lean that comes from the sun's own disc, on one axis
     vec4 rough;       // x: variance of the lean by waves that are not drawn, yzw: -
+    vec4 last;        // last slice of each cascade that is made
     vec4 cascades[4]; // x: depth of the first slice [m], y: slices a doubling of depth, z: variance of the lean by
                       // this cascade's waves, on one axis, w: side of a texel [m]
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(SunlightBlock) == 96, "std140 layout");
+static_assert(sizeof(SunlightBlock) == 112, "std140 layout");
 } // namespace tarn::shared
 #endif

@@ -283,8 +283,9 @@ void add_view_options(CLI::App& c, ViewWords& w) {
     c.add_option("--caustic-photons", w.settings.caustic_photons,
                  "of splat, on a side of a texel of the waves: 1, 2 or 4")
         ->capture_default_str();
-    c.add_option("--shaft-steps", w.settings.shaft_steps,
-                 "places along a view in the water where each pixel looks for shafts of light; 0: none")
+    c.add_option(
+         "--shaft-steps", w.settings.shaft_steps,
+         "places along a view in the water where each pixel looks for shafts of light; 0: none")
         ->capture_default_str();
     c.add_option("--least-transmittance", w.settings.least_transmittance,
                  "underwater paths end where less is left")

@@ -13,7 +13,8 @@
 namespace tarn::reference {
 
 Photon photon_below(glm::dvec3 sun, glm::dvec2 slope, double index, bool schlick) {
-    // By the plane of incidence instead of the GPU's vectors: angles, then the part along the facet.
+    // By the plane of incidence instead of the GPU's vectors: angles, then the part along the
+    // facet.
     const glm::dvec3 normal = glm::normalize(glm::dvec3(-slope.x, -slope.y, 1.0));
     const double cosine = glm::dot(sun, normal);
     if (!(cosine > 0.0))
@@ -85,9 +86,9 @@ std::vector<double> sunlight_by_photons(const SurfaceFunction& surface, const Ph
     const int m = light.photons_a_side;
     std::vector<double> sum(std::size_t(n) * std::size_t(n), 0.0);
     std::mutex adding;
-    const glm::dvec3 side_of_sun = glm::normalize(
-        std::abs(light.sun.z) < 0.9 ? glm::cross(light.sun, glm::dvec3(0, 0, 1))
-                                    : glm::cross(light.sun, glm::dvec3(1, 0, 0)));
+    const glm::dvec3 side_of_sun =
+        glm::normalize(std::abs(light.sun.z) < 0.9 ? glm::cross(light.sun, glm::dvec3(0, 0, 1))
+                                                   : glm::cross(light.sun, glm::dvec3(1, 0, 0)));
     const glm::dvec3 top_of_sun = glm::cross(light.sun, side_of_sun);
     tbb::parallel_for(tbb::blocked_range<int>(-margin, n + margin, 8), [&](const auto& rows) {
         std::vector<double> own(sum.size(), 0.0);
@@ -98,14 +99,15 @@ std::vector<double> sunlight_by_photons(const SurfaceFunction& surface, const Ph
                 for (int k = 0; k < m * m; ++k) {
                     const glm::dvec2 in_texel((k % m + even(random)) / m,
                                               (k / m + even(random)) / m);
-                    const glm::dvec2 at = square.corner_m + texel * (glm::dvec2(col, row) + in_texel);
+                    const glm::dvec2 at =
+                        square.corner_m + texel * (glm::dvec2(col, row) + in_texel);
                     const SurfacePoint s = surface(at);
                     glm::dvec3 sun = light.sun;
                     if (light.disc_rad > 0.0) {
                         const double r = light.disc_rad * std::sqrt(even(random)),
                                      a = 6.283185307179586 * even(random);
-                        sun = glm::normalize(sun + r * (std::cos(a) * side_of_sun +
-                                                        std::sin(a) * top_of_sun));
+                        sun = glm::normalize(
+                            sun + r * (std::cos(a) * side_of_sun + std::sin(a) * top_of_sun));
                     }
                     const Photon p = photon_below(sun, s.slope, light.index, light.schlick);
                     const glm::dvec2 lands =
@@ -187,7 +189,7 @@ SunTiles::SunTiles(const waves::Sea& sea, double time_s, const PhotonLight& ligh
                 std::min(std::log2(200.0), std::log2(std::max(2.0 * deepest_m / out.first_m, 2.0)));
             PhotonLight even = light;
             even.disc_rad = 0.0; // blurred with the rest
-            even.photons_a_side = 4;
+            even.photons_a_side = 8;
             for (int k = 0; k <= int(std::ceil(doublings * out.slices_a_doubling)); ++k)
                 out.slices.push_back(sunlight_by_photons(
                     table, even, {.corner_m = {0, 0}, .side_m = c.patch_m, .texels = side_},
@@ -200,8 +202,8 @@ SunTiles::SunTiles(const waves::Sea& sea, double time_s, const PhotonLight& ligh
 double SunTiles::focus(glm::dvec2 at_m, double depth_m, const std::vector<double>& amplitude,
                        const std::function<double()>& random) const {
     const glm::dvec2 straight = at_m - depth_m * beam_;
-    double variance =
-        disc_variance_ + rough_variance_ * amplitude[finest_] * amplitude[finest_], product = 1.0;
+    double variance = disc_variance_ + rough_variance_ * amplitude[finest_] * amplitude[finest_],
+           product = 1.0;
     for (std::size_t j = cascades_.size(); j-- > 0;) {
         const Cascade& c = cascades_[j];
         const double weak = amplitude[j] * depth_m;
@@ -210,9 +212,9 @@ double SunTiles::focus(glm::dvec2 at_m, double depth_m, const std::vector<double
             const double radius =
                 depth_m * std::sqrt(variance) * std::sqrt(-2.0 * std::log(1.0 - random()));
             const double turn = 6.283185307179586 * random();
-            const glm::dvec2 p =
-                (straight + radius * glm::dvec2(std::cos(turn), std::sin(turn))) / c.patch_m *
-                    double(side_) - 0.5;
+            const glm::dvec2 p = (straight + radius * glm::dvec2(std::cos(turn), std::sin(turn))) /
+                                     c.patch_m * double(side_) -
+                                 0.5;
             const double place = std::clamp(std::log2(weak / c.first_m) * c.slices_a_doubling, 0.0,
                                             double(c.slices.size()) - 1.001);
             const double x0 = std::floor(p.x), y0 = std::floor(p.y);

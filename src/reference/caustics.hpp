@@ -36,7 +36,7 @@ SurfaceFunction tabulated(const SurfaceFunction& surface, glm::dvec2 corner_m, d
 struct SunlitSquare {
     glm::dvec2 corner_m{0.0}; ///< south-western
     double side_m = 1.0;
-    int texels = 64; ///< a side; row = y
+    int texels = 64;      ///< a side; row = y
     bool periodic = true; ///< the surface repeats itself with it
 };
 
@@ -45,9 +45,9 @@ struct PhotonLight {
     glm::dvec3 sun{0, 0, 1}; ///< towards it, unit, z > 0
     double index = 1.333;
     bool schlick = false;
-    double disc_rad = 0.0;    ///< radius of the sun's disc, each photon comes from a place of it
-    int photons_a_side = 4;   ///< of a texel; evenly strewn, jittered
-    double steepest = 1.0;    ///< slope of the surface, where the square is not periodic
+    double disc_rad = 0.0;  ///< radius of the sun's disc, each photon comes from a place of it
+    int photons_a_side = 4; ///< of a texel; evenly strewn, jittered
+    double steepest = 1.0;  ///< slope of the surface, where the square is not periodic
 };
 
 /// Mean sunlight on each texel of a square at a depth, against that below flat water.

@@ -87,12 +87,13 @@ public:
                 raised_.offset_m += waves_->bound_m();
                 const bool bent = settings_.caustics != scene::Caustics::off && sun.z > 0.0;
                 if (bent && !sea_.cascades.empty())
-                    tiles_.emplace(sea_, view.waves.time_s,
-                                   PhotonLight{.sun = sun,
-                                               .index = index_,
-                                               .schlick = settings_.fresnel == scene::Fresnel::schlick,
-                                               .disc_rad = scene::sun_radius_rad},
-                                   deepest_m(scene));
+                    tiles_.emplace(
+                        sea_, view.waves.time_s,
+                        PhotonLight{.sun = sun,
+                                    .index = index_,
+                                    .schlick = settings_.fresnel == scene::Fresnel::schlick,
+                                    .disc_rad = scene::sun_radius_rad},
+                        deepest_m(scene));
             }
         }
         const glm::dvec3& p = camera_.position;
@@ -397,12 +398,12 @@ private:
                 lit =
                     !blocked(from, sun_below_, up) && !blocked(top, light_.sun_direction, infinity);
             }
-            if (lit)
-            {
+            if (lit) {
                 const double way = depth / sun_below_.z + water_m;
                 glm::dvec3 left = medium_.transmittance(way);
                 if (tiles_)
-                    left += (focus_at(hit.point, depth, 16) - 1.0) * medium_.pattern_transmittance(way);
+                    left +=
+                        (focus_at(hit.point, depth, 16) - 1.0) * medium_.pattern_transmittance(way);
                 irradiance += sun_irradiance_below_ * facing * left;
             }
         }
@@ -517,7 +518,7 @@ private:
         const double slant = 1.0 / sun_below_.z, sink = -direction.z;
         if (!tiles_ || settings_.shaft_steps == 0 || !(length > 0.0))
             return medium_.path_radiance(slant, depth, sink, before_m, length);
-        constexpr int pieces = 24; // each longer than the one before it
+        constexpr int pieces = 96; // each longer than the one before it
         const glm::dvec3 luminance(0.2126, 0.7152, 0.0722);
         glm::dvec3 sum(0.0);
         double from = 0.0;
@@ -551,7 +552,7 @@ private:
     waves::Sea sea_;
     std::optional<WaveSurface> waves_;
     std::optional<SunTiles> tiles_; ///< of light that the waves focus
-    Heightfield raised_; ///< the water, as high as its waves may come
+    Heightfield raised_;            ///< the water, as high as its waves may come
 };
 
 } // namespace

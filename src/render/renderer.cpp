@@ -47,7 +47,8 @@ void Renderer::upload_scene() {
         if (const std::uint16_t code = water.codes.values[i]; code != no_water_code) {
             const double level = water.offset_m + water.scale_m * code;
             water_top_m_ = std::max(water_top_m_, level);
-            deepest_m_ = std::max(deepest_m_, level - ground.offset_m - ground.scale_m * ground.codes.values[i]);
+            deepest_m_ = std::max(deepest_m_, level - ground.offset_m -
+                                                  ground.scale_m * ground.codes.values[i]);
         }
 
     // Heights on the GPU count from the ground's offset: float32 then resolves a fraction of a
@@ -146,9 +147,9 @@ const Renderer::WavyPasses& Renderer::wavy_passes() {
             {{"lib/walks/cone_map.glsl", "lib/walks/" + walk_file() + ".glsl"}}, defined));
     };
     return wavy_passes_
-        .emplace(key, WavyPasses{pass("primary"), pass("surface"), pass("secondary"),
-                                 pass("shadow"),
-                                 caustics_ ? pass("sunlit") : gpu::ComputeProgram(), pass("shade")})
+        .emplace(key,
+                 WavyPasses{pass("primary"), pass("surface"), pass("secondary"), pass("shadow"),
+                            caustics_ ? pass("sunlit") : gpu::ComputeProgram(), pass("shade")})
         .first->second;
 }
 
@@ -209,6 +210,10 @@ void Renderer::prepare_sunlight(const scene::View& view) {
     asked.texels = settings.caustic_texels;
     asked.photons = settings.caustic_photons;
     asked.deepest_m = deepest_m_;
+    for (const LakeRecord& lake : scene_.lakes)
+        if (lake.bed == Bed::unknown) // nothing but water, as deep as light comes back from
+            asked.deepest_m =
+                std::max(asked.deepest_m, scene::greatest_path_m(scene_.optics, settings));
     sunlight_.set(waves_->sea(), asked);
     sunlight_.on_pass = on_pass;
     sunlight_.update(*waves_);
@@ -342,7 +347,8 @@ void Renderer::prepare(const scene::View& view) {
     if (wavy() && (surfaces_.width_px() != settings.width_px || surfaces_.height_px() != tile_rows))
         surfaces_ = gpu::Texture2D(GL_RGBA32UI, settings.width_px, tile_rows, 1,
                                    gpu::Filter::nearest, "surfaces");
-    if (caustics_ && (sunlit_.width_px() != settings.width_px || sunlit_.height_px() != 2 * tile_rows))
+    if (caustics_ &&
+        (sunlit_.width_px() != settings.width_px || sunlit_.height_px() != 2 * tile_rows))
         sunlit_ = gpu::Texture2D(GL_R32UI, settings.width_px, 2 * tile_rows, 1,
                                  gpu::Filter::nearest, "sunlit");
     use_walk(settings.walk, settings.walk_setting);

@@ -140,12 +140,12 @@ private:
     SunlightVolume sunlight_;
     bool caustics_ = false; ///< waves focus the sun's light in this picture
     int shaft_steps_ = 0;   ///< places along a view that shafts of light are looked up at; 0: none
-    gpu::Texture2D water_;               ///< the water's table (scene/water_colour.hpp) ...
+    gpu::Texture2D water_;  ///< the water's table (scene/water_colour.hpp) ...
     std::optional<bool> water_spectral_; ///< ... as it was made last
     gpu::Texture2D sunlit_;   ///< how waves focus the light of each part, with caustics only
     gpu::Texture2D surfaces_; ///< of the water met, for the passes after the first; with waves only
     double top_m_ = 0.0, water_top_m_ = 0.0; ///< highest node, above z = 0; highest level
-    double deepest_m_ = 0.0; ///< water of the scene
+    double deepest_m_ = 0.0;                 ///< water of the scene
     glm::dvec3 camera_m_{0.0};
     bool in_slab_ =
         false;            ///< rays may enter the slab of a lake's waves from its side, and leave it

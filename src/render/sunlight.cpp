@@ -62,8 +62,7 @@ void SunlightVolume::set(const waves::Sea& sea, const SunlightSettings& settings
         side_ = side;
         const int layers = cascades_ * settings.slices;
         tiles_ = gpu::TextureLayers(GL_RG16F, side, layers, "sunlight");
-        const std::size_t texels =
-            std::size_t(side) * std::size_t(side) * std::size_t(layers);
+        const std::size_t texels = std::size_t(side) * std::size_t(side) * std::size_t(layers);
         flux_texels_ = texels;
         flux_ = gpu::Buffer(texels * sizeof(GLuint), nullptr);
         bytes_ = texels * (4 + 4 * 4 / 3);
@@ -97,6 +96,8 @@ void SunlightVolume::set(const waves::Sea& sea, const SunlightSettings& settings
             std::log2(std::max(settings.deepest_m / first, 1e-9)) * block_.cascades[j].y;
         needed_[j] = int(std::clamp(std::ceil(last) + 2.0, 2.0, double(settings.slices)));
     }
+    for (int j = 0; j < cascades_; ++j)
+        block_.last[j] = float(needed_[j] - 1);
     block_buffer_ = gpu::Buffer(sizeof block_, &block_);
     gpu::check_gl("laying out the sunlight");
 }
@@ -107,10 +108,9 @@ const SunlightVolume::Passes& SunlightVolume::passes() {
         return known->second;
     const auto root = gpu::shader_root();
     const int number = int(settings_.method) - int(scene::Caustics::splat);
-    const std::string defined = text("#define TARN_SUNLIGHT_METHOD ", number,
-                                     "\n#define TARN_SUNLIGHT_PHOTONS ",
-                                     settings_.method == scene::Caustics::splat ? settings_.photons : 1,
-                                     "\n");
+    const std::string defined =
+        text("#define TARN_SUNLIGHT_METHOD ", number, "\n#define TARN_SUNLIGHT_PHOTONS ",
+             settings_.method == scene::Caustics::splat ? settings_.photons : 1, "\n");
     const std::string from_flux =
         std::string("#define TARN_SUNLIGHT_FROM_FLUX 1\n") +
         (settings_.method == scene::Caustics::photon_map ? "#define TARN_SUNLIGHT_BILATERAL 1\n"
@@ -120,9 +120,9 @@ const SunlightVolume::Passes& SunlightVolume::passes() {
     };
     return passes_
         .emplace(key, Passes{pass("passes/sunlight_clear.comp", ""),
-                                          pass("passes/sunlight_photons.comp", defined),
-                                          pass("passes/sunlight_tiles.comp", from_flux),
-                                          pass("passes/sunlight_tiles.comp", "")})
+                             pass("passes/sunlight_photons.comp", defined),
+                             pass("passes/sunlight_tiles.comp", from_flux),
+                             pass("passes/sunlight_tiles.comp", "")})
         .first->second;
 }
 
@@ -184,7 +184,8 @@ void SunlightVolume::bind() const {
 }
 
 double SunlightVolume::slice_depth_m(int cascade, int slice) const {
-    return block_.cascades[cascade].x * std::exp2(double(slice) / double(block_.cascades[cascade].y));
+    return block_.cascades[cascade].x *
+           std::exp2(double(slice) / double(block_.cascades[cascade].y));
 }
 
 std::vector<float> SunlightVolume::read(int cascade, int slice) const {

@@ -18,14 +18,14 @@ namespace tarn::render {
 
 /// What the tiles are made for.
 struct SunlightSettings {
-    glm::dvec3 sun{0, 0, 1};     ///< towards it, unit, z > 0
-    double index = 1.333;        ///< of refraction of the water
+    glm::dvec3 sun{0, 0, 1}; ///< towards it, unit, z > 0
+    double index = 1.333;    ///< of refraction of the water
     bool schlick = false;
     scene::Caustics method = scene::Caustics::splat; ///< not `off`
-    int texels = 0;              ///< a side of a tile: a power of two, at most the waves'; 0: half of theirs
-    int photons = 1;             ///< of `splat`, on a side of a texel of the waves: 1, 2 or 4
-    int slices = 14;             ///< depths of each cascade, [2, 64]
-    double deepest_m = 1e9;      ///< no light is looked for below
+    int texels = 0;  ///< a side of a tile: a power of two, at most the waves'; 0: half of theirs
+    int photons = 1; ///< of `splat`, on a side of a texel of the waves: 1, 2 or 4
+    int slices = 14; ///< depths of each cascade, [2, 64]
+    double deepest_m = 1e9; ///< no light is looked for below
     friend bool operator==(const SunlightSettings&, const SunlightSettings&) = default;
 };
 

@@ -24,7 +24,8 @@ void RenderSettings::validate() const {
     if (caustic_texels != 0)
         require_range("texels of the caustics", caustic_texels, 16, 2048);
     if (caustic_photons != 1 && caustic_photons != 2 && caustic_photons != 4)
-        throw Error(text("photons of the caustics are ", caustic_photons, " a side, must be 1, 2 or 4"));
+        throw Error(
+            text("photons of the caustics are ", caustic_photons, " a side, must be 1, 2 or 4"));
     require_range("steps of the shafts", shaft_steps, 0, 256);
     if (walk_setting != 0.0)
         require_range("intersection setting", walk_setting, 1.0, 65536.0);

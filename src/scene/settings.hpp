@@ -69,10 +69,11 @@ struct RenderSettings {
     bool spectral = true;    ///< integrate over the water's bands; false: three narrow channels
     bool thrown_back = true; ///< light that the surface sends back to the bed
     Caustics caustics = Caustics::splat;
-    int caustic_texels = 0; ///< a side of a tile of them; 0: half the waves', else a power of two, [16, 2048]
+    int caustic_texels =
+        0; ///< a side of a tile of them; 0: half the waves', else a power of two, [16, 2048]
     int caustic_photons = 1; ///< of `splat`, on a side of a texel of the waves: 1, 2 or 4
-    int shaft_steps = 2; ///< places along a view in the water where each of sixteen pixels side by side
-                         ///< looks for shafts of light, [0, 256]; 0: none
+    int shaft_steps = 2; ///< places along a view in the water where each of sixteen pixels side by
+                         ///< side looks for shafts of light, [0, 256]; 0: none
     double least_transmittance = 0.002;  ///< underwater paths end where less is left, [1e-6, .5]
     std::optional<double> ground_albedo; ///< lab: one grey for all ground, [0, 1]
     Walk walk = Walk::cone_map;

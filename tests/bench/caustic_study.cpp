@@ -1,5 +1,6 @@
-// How near the ways to gather sunlight below waves come to many photons, and what each costs: figures and plots of
-// docs/physics/caustics.md. Writes data files and pictures for scripts/caustic-study.
+// How near the ways to gather sunlight below waves come to many photons, and what each costs:
+// figures and plots of docs/physics/caustics.md. Writes data files and pictures for
+// scripts/caustic-study.
 //
 //   tarn_caustic_study FOLDER
 #include "bench/timing.hpp"
@@ -80,7 +81,8 @@ void write_pfm(const std::filesystem::path& path, const std::vector<double>& val
 /// Each method's tiles of one cascade against photons by the thousand.
 void methods(const std::filesystem::path& folder) {
     std::ofstream data(folder / "methods.dat");
-    std::cout << "| method | texels a side | depth [m] | contrast | of photons | off (relative L1) | mean |\n"
+    std::cout << "| method | texels a side | depth [m] | contrast | of photons | off (relative L1) "
+                 "| mean |\n"
                  "| --- | --- | --- | --- | --- | --- | --- |\n";
     const int cascade = 1;
     const glm::dvec3 sun = sun_at(50.0);
@@ -95,29 +97,37 @@ void methods(const std::filesystem::path& folder) {
     for (const int side : {128, 256}) {
         std::map<int, std::vector<double>> photons; // by slice
         for (const scene::CausticsMethod& method : scene::caustics_methods()) {
-            if (method.caustics == scene::Caustics::off || (std::getenv("M") && method.name != std::string(std::getenv("M"))))
+            if (method.caustics == scene::Caustics::off ||
+                (std::getenv("M") && method.name != std::string(std::getenv("M"))))
                 continue;
             render::SunlightVolume tiles;
-            tiles.set(sea, {.sun = sun, .method = method.caustics, .texels = side, .photons = std::getenv("P") ? std::atoi(std::getenv("P")) : 1, .slices = 20});
+            tiles.set(sea, {.sun = sun,
+                            .method = method.caustics,
+                            .texels = side,
+                            .photons = std::getenv("P") ? std::atoi(std::getenv("P")) : 1,
+                            .slices = 20});
             tiles.update(field);
             for (const int slice : {3, 8, 11, 15}) {
                 const double depth = tiles.slice_depth_m(cascade, slice);
                 if (!photons.count(slice))
                     photons[slice] = reference::sunlight_by_photons(
                         surface, {.sun = sun, .photons_a_side = 2048 / side},
-                        {.corner_m = glm::dvec2(-0.5 * own.texel_m()), .side_m = own.patch_m, .texels = side},
+                        {.corner_m = glm::dvec2(-0.5 * own.texel_m()),
+                         .side_m = own.patch_m,
+                         .texels = side},
                         depth);
                 const Likeness l = compare(tiles.read(cascade, slice), photons[slice]);
-                std::cout << "| " << method.name << " | " << side << " | " << fixed(depth, 2) << " | "
-                          << fixed(l.contrast, 3) << " | " << fixed(l.expected_contrast, 3) << " | "
-                          << fixed(l.l1, 4) << " | " << fixed(l.mean, 4) << " |\n";
+                std::cout << "| " << method.name << " | " << side << " | " << fixed(depth, 2)
+                          << " | " << fixed(l.contrast, 3) << " | " << fixed(l.expected_contrast, 3)
+                          << " | " << fixed(l.l1, 4) << " | " << fixed(l.mean, 4) << " |\n";
                 data << method.name << " " << side << " " << depth << " " << l.l1 << "\n";
             }
         }
     }
 }
 
-/// The product of the cascades' tiles as a picture looks it up, against photons through all the waves together.
+/// The product of the cascades' tiles as a picture looks it up, against photons through all the
+/// waves together.
 void whole_sea(const std::filesystem::path& folder) {
     std::cout << "\n| wind [m/s] | depth [m] | contrast | of photons | off (relative L1) | mean |\n"
                  "| --- | --- | --- | --- | --- | --- |\n";
@@ -129,7 +139,9 @@ void whole_sea(const std::filesystem::path& folder) {
         field.move_to(0.0);
         field.bind({0.0, 0.0}, 0.5);
         render::SunlightVolume tiles;
-        tiles.set(sea, {.sun = sun, .texels = std::getenv("T") ? std::atoi(std::getenv("T")) : 0, .slices = std::getenv("K") ? std::atoi(std::getenv("K")) : 20});
+        tiles.set(sea, {.sun = sun,
+                        .texels = std::getenv("T") ? std::atoi(std::getenv("T")) : 0,
+                        .slices = std::getenv("K") ? std::atoi(std::getenv("K")) : 20});
         tiles.update(field);
         tiles.bind();
         const gpu::ComputeProgram look(gpu::expand_shader(
@@ -138,13 +150,15 @@ void whole_sea(const std::filesystem::path& folder) {
                 "#include \"lib/waves.glsl\"\n#include \"lib/caustics.glsl\"\n"
                 "layout(local_size_x = 8, local_size_y = 8) in;\n"
                 "layout(binding = TARN_TEXTURE_SUNLIGHT) uniform sampler2DArray tiles;\n"
-                "layout(binding = TARN_BLOCK_SUNLIGHT, std140) uniform Sunlight { SunlightBlock light; };\n"
+                "layout(binding = TARN_BLOCK_SUNLIGHT, std140) uniform Sunlight { SunlightBlock "
+                "light; };\n"
                 "layout(binding = TARN_BLOCK_WAVES, std140) uniform Waves { WaveBlock waves; };\n"
                 "layout(binding = 0, std430) writeonly buffer Out { float result[]; };\n"
                 "layout(location = 0) uniform vec4 square;\n" // side, depth, texels
                 "void main() { ivec2 at = ivec2(gl_GlobalInvocationID.xy);\n"
                 "vec2 place = (vec2(at) + 0.5) * square.x / square.z + square.y * light.beam.xy;\n"
-                "result[at.y * int(square.z) + at.x] = sun_focus(tiles, light, waves, place, square.y, vec4(1.0),"
+                "result[at.y * int(square.z) + at.x] = sun_focus(tiles, light, waves, place, "
+                "square.y, vec4(1.0),"
                 " square.x / square.z); }\n",
             "<look>"));
         for (const double depth : {0.5, 1.0, 2.0}) {
@@ -157,19 +171,24 @@ void whole_sea(const std::filesystem::path& folder) {
             glDispatchCompute(texels / 8, texels / 8, 1);
             glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
             std::vector<float> got(texels * texels);
-            glGetNamedBufferSubData(out.id(), 0, GLsizeiptr(got.size() * sizeof(float)), got.data());
+            glGetNamedBufferSubData(out.id(), 0, GLsizeiptr(got.size() * sizeof(float)),
+                                    got.data());
             // Photons come from beside the square, too: the surface is tabulated around it.
             const double around = side + depth * 0.5 + 1.0;
             const glm::dvec2 corner(-0.5 * (around - side));
             const auto surface = reference::tabulated(surface_of(sea), corner, around,
                                                       std::min(1024, int(around / 0.004)));
             const auto expected = reference::sunlight_by_photons(
-                surface, {.sun = sun, .disc_rad = scene::sun_radius_rad, .photons_a_side = 10, .steepest = 0.6},
+                surface,
+                {.sun = sun,
+                 .disc_rad = scene::sun_radius_rad,
+                 .photons_a_side = 10,
+                 .steepest = 0.6},
                 {.corner_m = {0, 0}, .side_m = side, .texels = texels, .periodic = false}, depth);
             const Likeness l = compare(got, expected);
-            std::cout << "| " << fixed(wind, 0) << " | " << fixed(depth, 1) << " | " << fixed(l.contrast, 3)
-                      << " | " << fixed(l.expected_contrast, 3) << " | " << fixed(l.l1, 3) << " | "
-                      << fixed(l.mean, 3) << " |" << std::endl;
+            std::cout << "| " << fixed(wind, 0) << " | " << fixed(depth, 1) << " | "
+                      << fixed(l.contrast, 3) << " | " << fixed(l.expected_contrast, 3) << " | "
+                      << fixed(l.l1, 3) << " | " << fixed(l.mean, 3) << " |" << std::endl;
             write_pfm(folder / text("sea_", wind, "_", depth, "_photons.pfm"), expected, texels);
             write_pfm(folder / text("sea_", wind, "_", depth, "_tiles.pfm"),
                       std::vector<double>(got.begin(), got.end()), texels);

@@ -2,7 +2,8 @@
 // needs OpenGL 4.5 and EGL, no GDAL and no OpenImageIO, so it runs on a bare GPU machine.
 //
 //   tarn_frame_bench [--side N,N,...] [--size WxH,WxH,...] [--view high,shore,dive]
-//                    [--intersection METHOD] [--wind M/S] [--caustics METHOD] [--caustic-texels N] [--caustic-photons N]
+//                    [--intersection METHOD] [--wind M/S] [--caustics METHOD] [--caustic-texels N]
+//                    [--caustic-photons N]
 //                    [--shaft-steps N] [--frames N] [--json FILE] [--ppm PREFIX]
 #include "bench/timing.hpp"
 #include "core/error.hpp"
@@ -148,15 +149,15 @@ int run(int argc, char** argv) {
                         "%6s^2  %-5s  %-9s  %-12s  %9.3f ms  (quartiles %.3f to %.3f, %s)\n",
                         side.c_str(), name.c_str(), size.c_str(), mode.name, t.median_ms, t.low_ms,
                         t.high_ms, t.clock);
-                    json += text(first ? "\n" : ",\n", "{\"wind_m_per_s\": ", wind,
-                                 ", \"caustics\": \"", wind > 0.0 ? caustics : "off",
-                                 "\", \"caustic_texels\": ", caustic_texels, ", \"caustic_photons\": ", caustic_photons,
-                                 ", \"shaft_steps\": ", wind > 0.0 ? shaft_steps : 0,
-                                 ", \"field\": ", side, ", \"intersection\": \"", method,
-                                 "\", \"view\": \"", name, "\", \"width\": ", w,
-                                 ", \"height\": ", h, ", \"mode\": \"", mode.name,
-                                 "\", \"median_ms\": ", t.median_ms, ", \"q1_ms\": ", t.low_ms,
-                                 ", \"q3_ms\": ", t.high_ms, ", \"clock\": \"", t.clock, "\"}");
+                    json += text(
+                        first ? "\n" : ",\n", "{\"wind_m_per_s\": ", wind, ", \"caustics\": \"",
+                        wind > 0.0 ? caustics : "off", "\", \"caustic_texels\": ", caustic_texels,
+                        ", \"caustic_photons\": ", caustic_photons,
+                        ", \"shaft_steps\": ", wind > 0.0 ? shaft_steps : 0, ", \"field\": ", side,
+                        ", \"intersection\": \"", method, "\", \"view\": \"", name,
+                        "\", \"width\": ", w, ", \"height\": ", h, ", \"mode\": \"", mode.name,
+                        "\", \"median_ms\": ", t.median_ms, ", \"q1_ms\": ", t.low_ms,
+                        ", \"q3_ms\": ", t.high_ms, ", \"clock\": \"", t.clock, "\"}");
                     first = false;
                     if (mode.split && mode.shadows) {
                         const auto parts = bench::time_parts(

@@ -100,13 +100,14 @@ TEST(CausticsGpu, PhotonAgrees) {
         suns.emplace_back(glm::vec3(sun), i % 2);
         slopes.emplace_back(0.6f * even(random), 0.6f * even(random), 0, 0);
     }
-    const test_support::GpuFunction on_gpu(
-        "lib/caustics.glsl",
-        "Photon p = photon_below(x.xyz, y.xy, 1.333, x.w > 0.5); result = vec4(p.lean, p.share, 0.0);");
+    const test_support::GpuFunction on_gpu("lib/caustics.glsl",
+                                           "Photon p = photon_below(x.xyz, y.xy, 1.333, x.w > "
+                                           "0.5); result = vec4(p.lean, p.share, 0.0);");
     const auto got = on_gpu(suns, slopes);
     for (std::size_t i = 0; i < got.size(); ++i) {
-        const reference::Photon p = reference::photon_below(
-            glm::normalize(glm::dvec3(suns[i])), {slopes[i].x, slopes[i].y}, 1.333, suns[i].w > 0.5f);
+        const reference::Photon p =
+            reference::photon_below(glm::normalize(glm::dvec3(suns[i])), {slopes[i].x, slopes[i].y},
+                                    1.333, suns[i].w > 0.5f);
         EXPECT_NEAR(got[i].z, p.share, 2e-4 * std::max(1.0, p.share)) << i;
         EXPECT_NEAR(got[i].x, p.lean.x, 1e-5 * (1.0 + 10.0 * std::abs(p.lean.x))) << i;
         EXPECT_NEAR(got[i].y, p.lean.y, 1e-5 * (1.0 + 10.0 * std::abs(p.lean.y))) << i;
@@ -117,16 +118,16 @@ TEST(CausticsGpu, PhotonAgrees) {
 TEST(CausticsGpu, FlatWaterIsOne) {
     for (const scene::Caustics method : all_methods)
         for (const double elevation : {90.0, 40.0, 1.0}) {
-            Tiles t(sea_of_one_wave(0.0, 1, 10.0, 128), {.sun = sun_at(elevation), .method = method});
+            Tiles t(sea_of_one_wave(0.0, 1, 10.0, 128),
+                    {.sun = sun_at(elevation), .method = method});
             for (const int slice : {0, 7, 13})
                 for (const float v : t.sunlight.read(0, slice))
-                    ASSERT_EQ(v, 1.0f)
-                        << int(method) << " " << elevation << " " << slice;
+                    ASSERT_EQ(v, 1.0f) << int(method) << " " << elevation << " " << slice;
         }
 }
 
-// Light only moves: at every depth the mean is that of the photons that enter, for seas from a breeze to a gale and
-// the sun from the zenith to a degree above the horizon.
+// Light only moves: at every depth the mean is that of the photons that enter, for seas from a
+// breeze to a gale and the sun from the zenith to a degree above the horizon.
 TEST(CausticsGpu, FluxIsConserved) {
     double least[5] = {1, 1, 1, 1, 1}, most[5] = {1, 1, 1, 1, 1};
     for (const scene::Caustics method : all_methods)
@@ -144,8 +145,8 @@ TEST(CausticsGpu, FluxIsConserved) {
                         const double got = mean(t.sunlight.read(j, k)) / entering;
                         if (method == scene::Caustics::splat || method == scene::Caustics::mesh)
                             EXPECT_NEAR(got, 1.0, 0.005)
-                                << int(method) << " wind " << wind << " sun " << elevation << " cascade "
-                                << j << " slice " << k;
+                                << int(method) << " wind " << wind << " sun " << elevation
+                                << " cascade " << j << " slice " << k;
                         else { // their loss is printed; see docs/physics/caustics.md
                             least[int(method)] = std::min(least[int(method)], got);
                             most[int(method)] = std::max(most[int(method)], got);
@@ -160,10 +161,10 @@ TEST(CausticsGpu, FluxIsConserved) {
     EXPECT_GT(least[int(scene::Caustics::photon_map)], 0.8);
 }
 
-// Photons by the hundred a texel, in double precision through a cubic spline of FFTW's waves: the pattern of splat with
-// four photons to a texel of the waves on tiles a quarter as wide is within 3 % (relative L1) down to where the waves
-// focus, and within 6 % beyond, where what the photons themselves scatter by is a third of that. The others' figures
-// are in docs/physics/caustics.md.
+// Photons by the hundred a texel, in double precision through a cubic spline of FFTW's waves: the
+// pattern of splat with four photons to a texel of the waves on tiles a quarter as wide is within 3
+// % (relative L1) down to where the waves focus, and within 6 % beyond, where what the photons
+// themselves scatter by is a third of that. The others' figures are in docs/physics/caustics.md.
 TEST(CausticsGpu, PatternAgreesWithManyPhotons) {
     const glm::dvec3 sun = sun_at(50.0);
     waves::Sea sea = sea_of(4.0, 256, 1);
@@ -177,15 +178,16 @@ TEST(CausticsGpu, PatternAgreesWithManyPhotons) {
         const double depth = t.sunlight.slice_depth_m(0, slice);
         const auto expected = reference::sunlight_by_photons(
             surface, {.sun = sun, .photons_a_side = 24},
-            {.corner_m = glm::dvec2(-0.5 * own.texel_m()), .side_m = own.patch_m, .texels = 64}, depth);
+            {.corner_m = glm::dvec2(-0.5 * own.texel_m()), .side_m = own.patch_m, .texels = 64},
+            depth);
         const double off = relative_l1(t.sunlight.read(0, slice), expected);
         std::printf("depth %.2f m: off by %.4f\n", depth, off);
         EXPECT_LT(off, slice <= 5 ? 0.03 : 0.06) << depth;
     }
 }
 
-// One sine of a few centimetres: the sun overhead comes to a focus below its crests at n / ((n - 1) A k^2), and above
-// that the pattern is that of a one-dimensional lens, by quadrature.
+// One sine of a few centimetres: the sun overhead comes to a focus below its crests at n / ((n - 1)
+// A k^2), and above that the pattern is that of a one-dimensional lens, by quadrature.
 TEST(CausticsGpu, OneWaveFocusesWhereItShould) {
     const double amplitude = 0.04, patch = 10.0, index = 1.333;
     const int waves_a_patch = 4, texels = 512;
@@ -220,15 +222,16 @@ TEST(CausticsGpu, OneWaveFocusesWhereItShould) {
             double off = 0.0;
             for (int x = 0; x < side; ++x)
                 off += std::abs(light[std::size_t(x)] - expected[std::size_t(x)]) / side;
-            EXPECT_LT(off, method == scene::Caustics::splat ? 0.015 : 0.03) << int(method) << " " << depth;
+            EXPECT_LT(off, method == scene::Caustics::splat ? 0.015 : 0.03)
+                << int(method) << " " << depth;
         }
         EXPECT_NEAR(brightest_at / focus, 1.0, 0.1) << int(method);
         EXPECT_GT(brightest, 5.0) << int(method);
     }
 }
 
-// What a picture looks up is 1 in the mean, near and far, shallow and deep, and fades to an even 1 where the pixel
-// is wider than the patches.
+// What a picture looks up is 1 in the mean, near and far, shallow and deep, and fades to an even 1
+// where the pixel is wider than the patches.
 TEST(CausticsGpu, FocusIsOneInTheMean) {
     test_support::context();
     waves::Sea sea = sea_of(5.0, 256, 3);
@@ -239,7 +242,8 @@ TEST(CausticsGpu, FocusIsOneInTheMean) {
     waves.bind({12.0, -7.0}, 0.5);
     t.sunlight.bind();
     const test_support::GpuFunction focus(
-        "lib/waves.glsl", "result = vec4(sun_focus(tiles, light, waves, x.xy, x.z, vec4(y.x), x.w));",
+        "lib/waves.glsl",
+        "result = vec4(sun_focus(tiles, light, waves, x.xy, x.z, vec4(y.x), x.w));",
         "#include \"lib/caustics.glsl\"\n"
         "layout(binding = TARN_TEXTURE_SUNLIGHT) uniform sampler2DArray tiles;\n"
         "layout(binding = TARN_BLOCK_SUNLIGHT, std140) uniform Sunlight { SunlightBlock light; };\n"
