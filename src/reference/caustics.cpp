@@ -93,7 +93,8 @@ std::vector<double> sunlight_by_photons(const SurfaceFunction& surface, const Ph
     tbb::parallel_for(tbb::blocked_range<int>(-margin, n + margin, 8), [&](const auto& rows) {
         std::vector<double> own(sum.size(), 0.0);
         for (int row = rows.begin(); row < rows.end(); ++row) {
-            std::mt19937_64 random(std::uint64_t(row + 100'000));
+            std::mt19937_64 random(std::uint64_t(row + 100'000) +
+                                   (std::uint64_t(light.seed) << 32));
             std::uniform_real_distribution<double> even(0.0, 1.0);
             for (int col = -margin; col < n + margin; ++col)
                 for (int k = 0; k < m * m; ++k) {

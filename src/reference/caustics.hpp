@@ -47,6 +47,7 @@ struct PhotonLight {
     bool schlick = false;
     double disc_rad = 0.0;  ///< radius of the sun's disc, each photon comes from a place of it
     int photons_a_side = 4; ///< of a texel; evenly strewn, jittered
+    unsigned seed = 0;      ///< another one, other places of the photons
     double steepest = 1.0;  ///< slope of the surface, where the square is not periodic
 };
 

@@ -2,7 +2,7 @@
 // figures and plots of docs/physics/caustics.md. Writes data files and pictures for
 // scripts/caustic-study.
 //
-//   tarn_caustic_study FOLDER
+//   tarn_caustic_study FOLDER [methods]    with the word, nothing but the methods
 #include "bench/timing.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
@@ -78,51 +78,108 @@ void write_pfm(const std::filesystem::path& path, const std::vector<double>& val
     }
 }
 
-/// Each method's tiles of one cascade against photons by the thousand.
+/// Each method's tiles of one cascade against photons by the hundred, and the time that a step of
+/// all takes.
 void methods(const std::filesystem::path& folder) {
     std::ofstream data(folder / "methods.dat");
-    std::cout << "| method | texels a side | depth [m] | contrast | of photons | off (relative L1) "
-                 "| mean |\n"
-                 "| --- | --- | --- | --- | --- | --- | --- |\n";
+    std::cout << "| method | photons a side of a wave's texel | texels a side | ms | off at ";
     const int cascade = 1;
     const glm::dvec3 sun = sun_at(50.0);
     const waves::Sea sea = sea_of(4.0);
     waves::Sea one = sea;
     one.cascades = {sea.cascades[cascade]};
     const waves::Cascade& own = one.cascades[0];
-    const auto surface = reference::tabulated(surface_of(one), {0, 0}, own.patch_m, 2048);
+    const auto surface = reference::tabulated(surface_of(one), {0, 0}, own.patch_m, 1024);
     render::WaveField field;
     field.set(sea);
     field.move_to(0.0);
+    const std::vector<int> slices = {2, 6, 8, 11};
+    render::SunlightVolume tiles;
+    tiles.set(sea, {.sun = sun});
+    for (const int slice : slices)
+        std::cout << fixed(tiles.slice_depth_m(cascade, slice), 1)
+                  << (slice == slices.back() ? " m | flux |\n" : ", ");
+    std::cout << "| --- | --- | --- | --- | --- | --- |\n";
     for (const int side : {128, 256}) {
-        std::map<int, std::vector<double>> photons; // by slice
-        for (const scene::CausticsMethod& method : scene::caustics_methods()) {
-            if (method.caustics == scene::Caustics::off ||
-                (std::getenv("M") && method.name != std::string(std::getenv("M"))))
-                continue;
-            render::SunlightVolume tiles;
-            tiles.set(sea, {.sun = sun,
-                            .method = method.caustics,
-                            .texels = side,
-                            .photons = std::getenv("P") ? std::atoi(std::getenv("P")) : 1,
-                            .slices = 20});
-            tiles.update(field);
-            for (const int slice : {3, 8, 11, 15}) {
-                const double depth = tiles.slice_depth_m(cascade, slice);
-                if (!photons.count(slice))
-                    photons[slice] = reference::sunlight_by_photons(
-                        surface, {.sun = sun, .photons_a_side = 2048 / side},
-                        {.corner_m = glm::dvec2(-0.5 * own.texel_m()),
-                         .side_m = own.patch_m,
-                         .texels = side},
-                        depth);
-                const Likeness l = compare(tiles.read(cascade, slice), photons[slice]);
-                std::cout << "| " << method.name << " | " << side << " | " << fixed(depth, 2)
-                          << " | " << fixed(l.contrast, 3) << " | " << fixed(l.expected_contrast, 3)
-                          << " | " << fixed(l.l1, 4) << " | " << fixed(l.mean, 4) << " |\n";
-                data << method.name << " " << side << " " << depth << " " << l.l1 << "\n";
+        std::map<int, std::vector<double>> photons, others;
+        for (const int slice : slices)
+            for (const bool other : {false, true})
+                (other ? others : photons)[slice] = reference::sunlight_by_photons(
+                    surface, {.sun = sun, .photons_a_side = 3072 / side, .seed = other},
+                    {.corner_m = glm::dvec2(-0.5 * own.texel_m()),
+                     .side_m = own.patch_m,
+                     .texels = side},
+                    tiles.slice_depth_m(cascade, slice));
+        for (const scene::CausticsMethod& method : scene::caustics_methods())
+            for (const int dense : {1, 2, 4}) {
+                if (method.caustics == scene::Caustics::off ||
+                    (dense > 1 && method.caustics != scene::Caustics::splat))
+                    continue;
+                tiles.set(
+                    sea, {.sun = sun, .method = method.caustics, .texels = side, .photons = dense});
+                const bench::Times t =
+                    bench::time_on_gpu([&] { tiles.update(field); }, gpu::is_software() ? 3 : 31);
+                std::cout << "| " << method.name << " | "
+                          << (method.caustics == scene::Caustics::splat ? text(dense) : "") << " | "
+                          << side << " | " << fixed(t.median_ms, 3) << " | ";
+                double worst = 0.0, low = 1e9, high = 0.0;
+                for (const int slice : slices) {
+                    const Likeness l = compare(tiles.read(cascade, slice), photons[slice]);
+                    std::cout << fixed(100.0 * l.l1, 1)
+                              << (slice == slices.back() ? " % | " : ", ");
+                    worst = std::max(worst, l.l1);
+                    low = std::min(low, l.mean);
+                    high = std::max(high, l.mean);
+                    if (slice == 8)
+                        data << method.name << (dense > 1 ? text("-", dense) : "") << " " << side
+                             << " " << t.median_ms << " " << 100.0 * l.l1 << "\n";
+                }
+                std::cout << fixed(low, 3) << " to " << fixed(high, 3) << " |" << std::endl;
             }
+        std::cout << "| photons against others of them | | " << side << " | | ";
+        for (const int slice : slices)
+            std::cout << fixed(100.0 * compare(std::vector<float>(others[slice].begin(),
+                                                                  others[slice].end()),
+                                               photons[slice])
+                                           .l1,
+                               1)
+                      << (slice == slices.back() ? " % | |\n" : ", ");
+    }
+}
+
+/// How often sunlight is how strong below all the waves: after Dera, as in Tessendorf's figure 29.
+void distributions(const std::filesystem::path& folder) {
+    std::ofstream data(folder / "distribution.dat");
+    const waves::Sea sea = sea_of(4.0);
+    for (const double depth : {2.0, 10.0}) {
+        const double side = 4.0, around = side + depth + 1.0;
+        const auto surface =
+            reference::tabulated(surface_of(sea), glm::dvec2(-0.5 * (around - side)), around,
+                                 std::min(1536, int(around / 0.004)));
+        const int texels = 256;
+        const auto light = reference::sunlight_by_photons(
+            surface,
+            {.sun = sun_at(80.0),
+             .disc_rad = scene::sun_radius_rad,
+             .photons_a_side = 8,
+             .steepest = 0.6},
+            {.corner_m = {0, 0}, .side_m = side, .texels = texels, .periodic = false}, depth);
+        std::vector<int> count(60);
+        double mean = 0.0, m2 = 0.0, m3 = 0.0;
+        for (const double v : light) {
+            ++count[std::size_t(std::clamp(v * 10.0, 0.0, 59.0))];
+            mean += v / double(light.size());
         }
+        for (const double v : light) {
+            m2 += std::pow(v - mean, 2) / double(light.size());
+            m3 += std::pow(v - mean, 3) / double(light.size());
+        }
+        std::cout << "depth " << depth << " m: contrast " << fixed(std::sqrt(m2) / mean, 2)
+                  << ", skewness " << fixed(m3 / std::pow(m2, 1.5), 2) << "\n";
+        for (std::size_t i = 0; i < count.size(); ++i)
+            data << 0.1 * (double(i) + 0.5) << " " << 10.0 * count[i] / double(light.size())
+                 << "\n";
+        data << "\n\n";
     }
 }
 
@@ -132,7 +189,7 @@ void whole_sea(const std::filesystem::path& folder) {
     std::cout << "\n| wind [m/s] | depth [m] | contrast | of photons | off (relative L1) | mean |\n"
                  "| --- | --- | --- | --- | --- | --- |\n";
     const glm::dvec3 sun = sun_at(50.0);
-    for (const double wind : {4.0}) {
+    for (const double wind : {2.0, 4.0, 8.0}) {
         const waves::Sea sea = sea_of(wind);
         render::WaveField field;
         field.set(sea);
@@ -161,7 +218,7 @@ void whole_sea(const std::filesystem::path& folder) {
                 "square.y, vec4(1.0),"
                 " square.x / square.z); }\n",
             "<look>"));
-        for (const double depth : {0.5, 1.0, 2.0}) {
+        for (const double depth : {0.5, 1.0, 2.0, 4.0, 8.0, 16.0}) {
             const int texels = 128;
             const double side = std::clamp(depth, 1.0, 8.0);
             const gpu::Buffer out(texels * texels * sizeof(float), nullptr);
@@ -205,10 +262,11 @@ int main(int argc, char** argv) try {
     }
     const gpu::Context context;
     const std::string only = argc > 2 ? argv[2] : "";
-    if (only != "sea")
-        methods(argv[1]);
-    if (only != "methods")
-        whole_sea(argv[1]);
+    methods(argv[1]);
+    if (only == "methods")
+        return 0;
+    distributions(argv[1]);
+    whole_sea(argv[1]);
     return 0;
 } catch (const std::exception& e) {
     std::cerr << e.what() << "\n";

@@ -61,10 +61,11 @@ TEST(Sky, ClearSkyConservesEnergyAndIsBlue) {
 
 TEST(Settings, OutOfRangeNamesTheField) {
     RenderSettings{}.validate();
-    for (const RenderSettings wrong :
+    for (const RenderSettings& wrong :
          {RenderSettings{.width_px = 0}, RenderSettings{.height_px = 16385},
-          RenderSettings{.samples = 0}, RenderSettings{.least_transmittance = 0.9},
-          RenderSettings{.ground_albedo = 1.5}})
+          RenderSettings{.samples = 0}, RenderSettings{.caustic_texels = 8},
+          RenderSettings{.caustic_photons = 3}, RenderSettings{.shaft_steps = -1},
+          RenderSettings{.least_transmittance = 0.9}, RenderSettings{.ground_albedo = 1.5}})
         EXPECT_THROW(wrong.validate(), Error);
     EXPECT_DOUBLE_EQ(
         greatest_path_m({.absorption_per_m = {1, 2, 3}, .backscattering_per_m = {0, 0, 0}},
