@@ -214,6 +214,13 @@ void Renderer::prepare_sunlight(const scene::View& view) {
         if (lake.bed == Bed::unknown) // nothing but water, as deep as light comes back from
             asked.deepest_m =
                 std::max(asked.deepest_m, scene::greatest_path_m(scene_.optics, settings));
+    // Nor deeper than light that was not scattered wide still draws a pattern of a fiftieth.
+    double scattered_per_m = scene_.optics.bands.empty() ? 0.0 : 1e9;
+    for (const scene::WaterBand& band : scene_.optics.bands)
+        scattered_per_m =
+            std::min(scattered_per_m, 0.6 * (band.scattering_per_m - band.backscattering_per_m));
+    if (scattered_per_m > 0.0)
+        asked.deepest_m = std::min(asked.deepest_m, std::log(50.0) / scattered_per_m);
     sunlight_.set(waves_->sea(), asked);
     sunlight_.on_pass = on_pass;
     sunlight_.update(*waves_);

@@ -155,6 +155,42 @@ TEST(Picture, ASecchiDiscDisappearsWhereItWasAsked) {
 
 // Water by its wavelengths, from crystal to mud and brown: the frame's one look-up against sums
 // over 120 wavelengths at every pixel.
+// How far a black thing is seen level ahead, 2 m down: its contrast with the water falls to .02 at 3.912 / c (Koschmieder
+// 1924), with c where the water lets through most; and a little sooner, since what the eye takes together is less clear
+// elsewhere. (Pure water is far clearer in the blue than in the green that counts most.)
+TEST(Picture, ABlackThingInTheWaterIsSeenAsFarAsItsAttenuationSays) {
+    test_support::context();
+    for (const char* name : {"pure", "clear lake", "mesotrophic lake", "eutrophic lake", "humic lake",
+                             "glacial lake"}) {
+        scene::Scene scene = scene::bowl(65);
+        scene.lakes[0].bed = Bed::unknown; // nothing but water
+        scene.optics = scene::water_type(name);
+        render::Renderer renderer(scene);
+        scene::View view;
+        view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.3, 0.2, 0.8)));
+        view.settings = {.width_px = 8, .height_px = 8, .samples = 1, .least_transmittance = 1e-6};
+        view.camera = scene::look({0, 0, 8.0}, 0, 0, 1.0);
+        double least_c = 1e9;
+        for (const scene::WaterBand& band : scene.optics.bands)
+            if (band.wavelength_nm >= 450 && band.wavelength_nm <= 650)
+                least_c = std::min(least_c, band.absorption_per_m + band.scattering_per_m);
+        const auto luminance = [](glm::vec3 c) {
+            return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
+        };
+        const double water = luminance(renderer.draw(view).radiance[27]);
+        double low = 0.0, high = 20.0 / least_c;
+        for (int i = 0; i < 24; ++i) {
+            const double d = 0.5 * (low + high);
+            view.overlay = scene::Overlay{
+                8, 8, std::vector<glm::vec4>(64, glm::vec4(0, 0, 0, float(d)))};
+            (1.0 - luminance(renderer.draw(view).radiance[27]) / water > 0.02 ? low : high) = d;
+        }
+        std::printf("%s: seen %.2f m, 3.912 / c = %.2f m\n", name, low, 3.912 / least_c);
+        EXPECT_GT(low * least_c / 3.912, name == std::string("pure") ? 0.7 : 0.8) << name;
+        EXPECT_LT(low * least_c / 3.912, 1.0) << name;
+    }
+}
+
 TEST(Picture, WatersByTheirWavelengths) {
     scene::Scene scene = scene::mountain_lake(257);
     for (const char* name : {"jerlov I", "clear lake", "humic lake", "glacial lake"}) {
