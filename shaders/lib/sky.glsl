@@ -4,13 +4,20 @@
 // sky_place — column and row (both in [0, 1]) of a direction in the sky table.
 //
 //   direction, sun  unit, scene axes; directions below the horizon take the lowest row
+//
+// A program whose table goes all around (scene/lighting.hpp) defines TARN_WHOLE_SKY.
 vec2 sky_place(vec3 direction, vec3 sun) {
     float elevation = asin(clamp(direction.z, 0.0, 1.0));
     float v = sqrt(elevation * (1.0 / 1.57079632679));
+#ifdef TARN_WHOLE_SKY
+    float turn = dot(direction.xy, direction.xy) > 0.0 ? atan(direction.x, direction.y) * (0.5 / 3.14159265359) : 0.0;
+    return vec2(turn - floor(turn), v);
+#else
     vec2 a = direction.xy, b = sun.xy;
     float scale = inversesqrt(max(dot(a, a) * dot(b, b), 1e-30));
     float u = acos(clamp(dot(a, b) * scale, -1.0, 1.0)) * (1.0 / 3.14159265359);
     return vec2(u, v);
+#endif
 }
 
 // sky_radiance — the table's value there, linear between its entries.

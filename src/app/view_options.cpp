@@ -5,6 +5,8 @@
 #include "core/text.hpp"
 #include "geo/frame.hpp"
 #include "geo/sun.hpp"
+#include "image/files.hpp"
+#include "scene/environment.hpp"
 #include "scene/presets.hpp"
 #include "scene/water_types.hpp"
 #include "waves/wind_rose.hpp"
@@ -249,6 +251,13 @@ void add_view_options(CLI::App& c, ViewWords& w) {
     c.add_option("--sun-irradiance", w.sun_irradiance, "R,G,B or one number, facing the sun (lab)");
     c.add_option("--sky-radiance", w.sky_radiance,
                  "R,G,B or one number: an even sky instead of the clear one (lab)");
+    c.add_option(
+        "--environment", w.environment,
+        "picture of the whole sky, EXR or HDR in latitude and longitude with the zenith at "
+        "the top and grid north in the middle, instead of the clear sky and its sun");
+    c.add_option("--environment-turn", w.environment_turn_deg,
+                 "it is turned so far clockwise [deg]")
+        ->capture_default_str();
     c.add_option("--visibility", w.visibility_km,
                  "of the air [km], .1 to 1000: haze over distance; default: clear air");
     c.add_option("--ground-albedo", w.settings.ground_albedo,
@@ -460,6 +469,22 @@ scene::View make_view(const ViewWords& w, scene::Scene& scene) {
     if (!w.sky_radiance.empty()) {
         const glm::dvec3 sky = parse_triple("--sky-radiance", w.sky_radiance);
         view.lighting = scene::uniform_sky(sun, view.lighting.sun_irradiance, sky);
+    }
+    if (!w.environment.empty()) {
+        if (!w.time.empty() || !w.sun.empty() || !w.sun_direction.empty() ||
+            !w.sky_radiance.empty())
+            throw Error("--environment brings its own sun and sky",
+                        "leave out --time, --sun, --sun-direction and --sky-radiance");
+        if (!std::isfinite(w.environment_turn_deg))
+            throw Error("--environment-turn must be a number of degrees");
+        const Image map = image::read_light(w.environment);
+        try {
+            view.lighting = scene::environment(map, w.environment_turn_deg);
+        } catch (Error& e) {
+            e.during(w.environment);
+            throw;
+        }
+        sun = view.lighting.sun_direction;
     }
     if (!w.sun_irradiance.empty())
         view.lighting.sun_irradiance = parse_triple("--sun-irradiance", w.sun_irradiance);

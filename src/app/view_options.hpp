@@ -15,6 +15,8 @@ struct ViewWords {
     std::string absorption, backscattering;
     std::optional<std::string> water, water_table;
     std::optional<double> visibility_km;
+    std::string environment;
+    double environment_turn_deg = 0.0;
     std::optional<double> secchi, chlorophyll, cdom, turbidity;
     std::string colour = "spectral";
     bool no_thrown_back = false;

@@ -153,6 +153,23 @@ Grid<std::uint8_t> read_bytes(const fs::path& path) {
     return out;
 }
 
+Image read_light(const fs::path& path) {
+    auto in = open(path);
+    const OIIO::ImageSpec spec = in->spec();
+    const int channels = spec.nchannels >= 3 ? 3 : 1;
+    const auto pixels = std::size_t(spec.image_pixels());
+    std::vector<float> values(pixels * std::size_t(channels));
+    if (!in->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data()))
+        throw Error(path.string() + ": is damaged (" + in->geterror() + ")", "save it again");
+    Image out{.width_px = spec.width, .height_px = spec.height, .radiance = {}, .distance_m = {}};
+    out.radiance.reserve(pixels);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const float* v = &values[i * std::size_t(channels)];
+        out.radiance.emplace_back(v[0], v[channels == 3 ? 1 : 0], v[channels == 3 ? 2 : 0]);
+    }
+    return out;
+}
+
 Grid<float> read_heights(const fs::path& path) {
     auto in = open(path);
     const OIIO::ImageSpec spec = in->spec();

@@ -24,6 +24,10 @@ void write_exr(const std::filesystem::path& path, const Image& image, const Meta
 /// Reads an EXR that write_exr() wrote, or any with R, G and B; without Z distances are infinite.
 Image read_exr(const std::filesystem::path& path);
 
+/// Reads the first three channels of a picture of light, EXR, HDR or any other, as linear floats;
+/// one channel counts as grey.
+Image read_light(const std::filesystem::path& path);
+
 /// Reads 16-bit codes of a one-channel TIFF. Georeference and scale are GDAL's business.
 /// @throws tarn::Error  if the file is missing, damaged, not 16-bit, or larger than 65536 a side
 Grid<std::uint16_t> read_codes(const std::filesystem::path& path);

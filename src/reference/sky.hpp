@@ -11,10 +11,15 @@
 namespace tarn::reference {
 
 /// Same contract as the GLSL function of the same name.
-inline glm::dvec2 sky_place(glm::dvec3 direction, glm::dvec3 sun) {
+inline glm::dvec2 sky_place(glm::dvec3 direction, glm::dvec3 sun, bool whole_turn = false) {
     constexpr double pi = 3.14159265358979323846;
     const double flat = std::hypot(direction.x, direction.y);
     const double elevation = std::max(0.0, std::atan2(direction.z, flat));
+    if (whole_turn) {
+        const double azimuth = std::atan2(direction.x, direction.y);
+        return {(azimuth < 0.0 ? azimuth + 2.0 * pi : azimuth) / (2.0 * pi),
+                std::sqrt(elevation / (pi / 2))};
+    }
     double apart = pi / 2; // overhead no azimuth is defined; the table is even there
     if (flat > 1e-12 && std::hypot(sun.x, sun.y) > 1e-12) {
         apart = std::abs(std::atan2(direction.x, direction.y) - std::atan2(sun.x, sun.y));
@@ -25,7 +30,7 @@ inline glm::dvec2 sky_place(glm::dvec3 direction, glm::dvec3 sun) {
 
 /// Same contract as the GLSL function of the same name.
 inline glm::dvec3 sky_radiance(const scene::SkyTable& table, glm::dvec3 direction, glm::dvec3 sun) {
-    const glm::dvec2 place = sky_place(direction, sun);
+    const glm::dvec2 place = sky_place(direction, sun, table.whole_turn);
     const double x = place.x * (table.azimuths - 1), y = place.y * (table.elevations - 1);
     const int i = std::clamp(int(x), 0, table.azimuths - 2),
               j = std::clamp(int(y), 0, table.elevations - 2);

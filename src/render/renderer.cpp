@@ -97,9 +97,10 @@ void Renderer::upload_scene() {
 
 // A picture without haze runs a program that holds none of it.
 void Renderer::use_shade() {
-    if (!shade_.count(hazy_))
-        shade_[hazy_] = gpu::ComputeProgram(
-            gpu::load_shader(gpu::shader_root(), "passes/shade.comp", {}, haze_defines()));
+    const auto key = std::pair(hazy_, whole_sky_);
+    if (!shade_.count(key))
+        shade_[key] = gpu::ComputeProgram(
+            gpu::load_shader(gpu::shader_root(), "passes/shade.comp", {}, air_defines()));
 }
 
 std::string Renderer::sunlight_defines() const {
@@ -107,7 +108,10 @@ std::string Renderer::sunlight_defines() const {
                      : std::string();
 }
 
-std::string Renderer::haze_defines() const { return hazy_ ? "#define TARN_HAZE 1\n" : ""; }
+std::string Renderer::air_defines() const {
+    return std::string(hazy_ ? "#define TARN_HAZE 1\n" : "") +
+           (whole_sky_ ? "#define TARN_WHOLE_SKY 1\n" : "");
+}
 
 void Renderer::use_walk(scene::Walk walk, double setting) {
     walk_ = walk;
@@ -136,7 +140,7 @@ std::string Renderer::walk_file() const {
 
 const Renderer::WavyPasses& Renderer::wavy_passes() {
     const std::string defined = (rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "") +
-                                waves_->defines() + haze_defines() + sunlight_defines() +
+                                waves_->defines() + air_defines() + sunlight_defines() +
                                 (in_slab_ ? "#define TARN_IN_SLAB 1\n" : "");
     const auto key = std::pair(walk_, defined);
     if (const auto known = wavy_passes_.find(key); known != wavy_passes_.end())
@@ -360,6 +364,7 @@ void Renderer::prepare(const scene::View& view) {
                                  gpu::Filter::nearest, "sunlit");
     use_walk(settings.walk, settings.walk_setting);
     hazy_ = light.visibility_m.has_value();
+    whole_sky_ = light.sky.whole_turn;
     use_shade();
     bounds_.prepare(walk_, false);
     bind_field(walk_, !under_water());
@@ -473,7 +478,7 @@ void Renderer::draw_tile() {
         glMemoryBarrier(images);
     }
     begins("shade");
-    (wavy_ones ? wavy_ones->shade : shade_.at(hazy_)).use();
+    (wavy_ones ? wavy_ones->shade : shade_.at({hazy_, whole_sky_})).use();
     glDispatchCompute(across, down, 1);
     begins("end");
 }

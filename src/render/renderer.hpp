@@ -107,7 +107,7 @@ private:
 
     void upload_scene();
     void use_shade();
-    std::string haze_defines() const;
+    std::string air_defines() const;
     std::string sunlight_defines() const;
     void prepare_sunlight(const scene::View& view);
     void use_walk(scene::Walk walk, double setting);
@@ -131,8 +131,8 @@ private:
     gpu::Texture2D
         hits_[3]; ///< ends of the parts of the paths of one tile (shaders/lib/parts.glsl)
     gpu::Buffer view_buffer_, lakes_;
-    std::map<bool, gpu::ComputeProgram> shade_; ///< without and with haze
-    bool hazy_ = false;
+    std::map<std::pair<bool, bool>, gpu::ComputeProgram> shade_; ///< by the next two
+    bool hazy_ = false, whole_sky_ = false;
     FieldBounds bounds_;
     std::map<scene::Walk, WalkPasses> passes_;
     std::map<std::pair<scene::Walk, std::string>, WavyPasses> wavy_passes_;

@@ -9,12 +9,15 @@
 
 namespace tarn::scene {
 
-/// Sky radiance over direction, symmetric about the sun's vertical plane.
+/// Sky radiance over direction, symmetric about the sun's vertical plane, or of a whole turn.
 /// Shape  `elevations` rows of `azimuths` values. Row j is elevation 90 deg * (j/(rows-1))^2, so
 ///        that rows crowd towards the horizon; column i is the angle i/(cols-1) * 180 deg between
-///        the direction's azimuth and the sun's. Below the horizon the lowest row counts.
+///        the direction's azimuth and the sun's; of a whole turn it is azimuth i/(cols-1) * 360
+///        deg, clockwise from grid north, the first column once more as the last. Below the horizon
+///        the lowest row counts.
 struct SkyTable {
     int azimuths = 0, elevations = 0;
+    bool whole_turn = false;
     std::vector<glm::vec3> radiance;
     const glm::vec3& at(int azimuth, int elevation) const {
         return radiance[std::size_t(elevation) * std::size_t(azimuths) + std::size_t(azimuth)];

@@ -155,13 +155,14 @@ TEST(Picture, ASecchiDiscDisappearsWhereItWasAsked) {
 
 // Water by its wavelengths, from crystal to mud and brown: the frame's one look-up against sums
 // over 120 wavelengths at every pixel.
-// How far a black thing is seen level ahead, 2 m down: its contrast with the water falls to .02 at 3.912 / c (Koschmieder
-// 1924), with c where the water lets through most; and a little sooner, since what the eye takes together is less clear
-// elsewhere. (Pure water is far clearer in the blue than in the green that counts most.)
+// How far a black thing is seen level ahead, 2 m down: its contrast with the water falls to .02
+// at 3.912 / c (Koschmieder 1924), with c where the water lets through most; and a little sooner,
+// since what the eye takes together is less clear elsewhere. (Pure water is far clearer in the blue
+// than in the green that counts most.)
 TEST(Picture, ABlackThingInTheWaterIsSeenAsFarAsItsAttenuationSays) {
     test_support::context();
-    for (const char* name : {"pure", "clear lake", "mesotrophic lake", "eutrophic lake", "humic lake",
-                             "glacial lake"}) {
+    for (const char* name : {"pure", "clear lake", "mesotrophic lake", "eutrophic lake",
+                             "humic lake", "glacial lake"}) {
         scene::Scene scene = scene::bowl(65);
         scene.lakes[0].bed = Bed::unknown; // nothing but water
         scene.optics = scene::water_type(name);
@@ -181,8 +182,8 @@ TEST(Picture, ABlackThingInTheWaterIsSeenAsFarAsItsAttenuationSays) {
         double low = 0.0, high = 20.0 / least_c;
         for (int i = 0; i < 24; ++i) {
             const double d = 0.5 * (low + high);
-            view.overlay = scene::Overlay{
-                8, 8, std::vector<glm::vec4>(64, glm::vec4(0, 0, 0, float(d)))};
+            view.overlay =
+                scene::Overlay{8, 8, std::vector<glm::vec4>(64, glm::vec4(0, 0, 0, float(d)))};
             (1.0 - luminance(renderer.draw(view).radiance[27]) / water > 0.02 ? low : high) = d;
         }
         std::printf("%s: seen %.2f m, 3.912 / c = %.2f m\n", name, low, 3.912 / least_c);

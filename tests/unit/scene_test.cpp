@@ -1,4 +1,5 @@
 #include "core/error.hpp"
+#include "scene/environment.hpp"
 #include "scene/lighting.hpp"
 #include "scene/presets.hpp"
 #include "scene/samples.hpp"
@@ -57,6 +58,54 @@ TEST(Sky, ClearSkyConservesEnergyAndIsBlue) {
     EXPECT_GT(share, 0.06);
     EXPECT_LT(share, 0.20);
     EXPECT_EQ(clear_sky({1, 0, -0.2}).sun_irradiance.g, 0.0);
+}
+
+// A map with a sun of known size, brightness and place in an even sky: its light is the sun's, the
+// sky stays even, and together they are the map's own light. Turned, the sun turns.
+TEST(Sky, AnEnvironmentMapHasItsSunTakenOut) {
+    const int w = 720, h = 360;
+    const glm::dvec3 sky(0.2, 0.3, 0.5);
+    const double azimuth = 0.7, elevation = 0.6;
+    const auto direction = [](double a, double e) {
+        return glm::dvec3(std::cos(e) * std::sin(a), std::cos(e) * std::cos(a), std::sin(e));
+    };
+    const glm::dvec3 sun = direction(azimuth, elevation);
+    Image map{.width_px = w, .height_px = h, .radiance = {}, .distance_m = {}};
+    glm::dvec3 put_in(0.0), on_level(0.0);
+    for (int y = 0; y < h; ++y)
+        for (int x = 0; x < w; ++x) {
+            const double a = ((x + 0.5) / w - 0.5) * 2 * M_PI, e = (0.5 - (y + 0.5) / h) * M_PI;
+            const double angle = 2 * M_PI / w * (M_PI / h) * std::cos(e);
+            glm::dvec3 c = sky;
+            if (glm::dot(direction(a, e), sun) > std::cos(0.02)) {
+                c += glm::dvec3(900, 800, 700);
+                put_in += angle * glm::dvec3(900, 800, 700);
+            }
+            on_level += angle * std::max(std::sin(e), 0.0) * c;
+            map.radiance.emplace_back(c);
+        }
+    const Lighting light = environment(map);
+    EXPECT_GT(glm::dot(light.sun_direction, sun), std::cos(0.003));
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(light.sun_irradiance[k] / put_in[k], 1.0, 0.002);
+        EXPECT_NEAR(light.sky_irradiance[k] / (M_PI * sky[k]), 1.0, 0.002);
+        EXPECT_NEAR((light.sky_irradiance[k] + light.sun_irradiance[k] * light.sun_direction.z) /
+                        on_level[k],
+                    1.0, 0.003);
+    }
+    EXPECT_GT(
+        glm::dot(environment(map, 90.0).sun_direction, direction(azimuth + M_PI / 2, elevation)),
+        std::cos(0.003));
+    // Without a bright place there is no sun; wrong shapes and values are refused.
+    Image even = map;
+    std::fill(even.radiance.begin(), even.radiance.end(), glm::vec3(1.0f));
+    EXPECT_EQ(environment(even).sun_irradiance.g, 0.0);
+    even.radiance[5].g = -1.0f;
+    EXPECT_THROW(environment(even), Error);
+    even.radiance[5].g = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_THROW(environment(even), Error);
+    even.width_px = 719;
+    EXPECT_THROW(environment(even), Error);
 }
 
 TEST(Settings, OutOfRangeNamesTheField) {
