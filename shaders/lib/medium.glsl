@@ -4,11 +4,11 @@
 
 // water_row — a row of the water's table.
 //
-//   table    RGBA32F, five rows over the length of a path
+//   table    RGBA32F, six rows over the length of a path
 //   scale    x: 1 / shortest path [1/m], y: texels per logarithm of path, z: greatest attenuation of any wavelength
 //            [1/m], w: last texel
 //   row      0 transmitted, 1 integral of what is scattered back, 2 what a metre scatters back, 3 thrown back,
-//            4 not scattered at all
+//            4 not scattered at all, 5 not scattered wide
 //   path_m   >= 0
 vec3 water_row(sampler2D table, vec4 scale, int row, float path_m) {
     float place = clamp(log(1.0 + path_m * scale.x) * scale.y, 0.0, scale.w - 0.01), low = floor(place);
@@ -25,16 +25,8 @@ vec3 thrown_back(sampler2D table, vec4 scale, float depth_m) { return water_row(
 // image_transmittance — of that, what has not been scattered at all, and still draws the edges of things.
 vec3 image_transmittance(sampler2D table, vec4 scale, float path_m) { return water_row(table, scale, 4, path_m); }
 
-// Share of what water scatters that goes off by more than some 2.5 degrees: what goes on within that still lands where
-// caustics and patterns of the bed are. Petzold's mean phase function (Mobley 1994, table 3.10), rounded.
-const float scattered_wide = 0.6;
-
-// pattern_transmittance — of white light, what still draws patterns as wide as a few degrees: between transmittance and
-//                         image_transmittance, by the share that is scattered wide.
-vec3 pattern_transmittance(vec3 transmitted, vec3 unscattered) {
-    vec3 share = clamp(unscattered / max(transmitted, vec3(1e-9)), 0.0, 1.0);
-    return transmitted * pow(share, vec3(scattered_wide));
-}
+// pattern_transmittance — what has not been scattered wide, and still draws caustics and patterns of the bed.
+vec3 pattern_transmittance(sampler2D table, vec4 scale, float path_m) { return water_row(table, scale, 5, path_m); }
 
 // path_radiance — light scattered into a straight path by the water itself, per unit of the light's irradiance just
 //                 below the surface on a plane facing it.

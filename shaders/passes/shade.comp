@@ -72,7 +72,7 @@ Sunlit sunlit_of(ivec2 local, int slot) {
 vec3 sunlight_left(float way_m, Sunlit sunlit) {
     vec3 left = transmittance(water, view.water, way_m);
 #ifdef TARN_CAUSTICS
-    left += (sunlit.bed - 1.0) * pattern_transmittance(left, image_transmittance(water, view.water, way_m));
+    left += (sunlit.bed - 1.0) * pattern_transmittance(water, view.water, way_m);
 #endif
     return left;
 }

@@ -69,9 +69,8 @@ float shaft_focus(Part part, float depth_m, float sink, float slant, float befor
         typical = min(length_m, 1.0 / max(abs(fall), 1e-3));
     }
     float whole = max(start + 0.5 * rate * typical, 1e-3);
-    float beam = scattered_wide / whole *
-                 log(max(dot(luminance, transmittance(water, view.water, whole)), 1e-12) /
-                     max(dot(luminance, image_transmittance(water, view.water, whole)), 1e-12)); // 1/m of path
+    float beam = log(max(dot(luminance, transmittance(water, view.water, whole)), 1e-12) /
+                     max(dot(luminance, pattern_transmittance(water, view.water, whole)), 1e-12)) / whole; // 1/m of path
     float last = exp(-fall * length_m);
     // Sixteen pixels side by side look at places of their own, and share what they find.
     float lot = order_of(ivec2(gl_LocalInvocationID.xy)) + fract(0.5 + 0.61803399 * view.offset.z) / 16.0;

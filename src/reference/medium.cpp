@@ -20,7 +20,7 @@ Medium::Medium(const scene::WaterOptics& optics, bool spectral) : index_(optics.
             const scene::WaterBand band = scene::band_at(optics.bands, nm);
             const glm::dvec3 weight = scene::sunlight_colour(nm);
             waves_.push_back({weight, band.attenuation_per_m(), band.backscattering_per_m,
-                              band.absorption_per_m + band.scattering_per_m});
+                              band.absorption_per_m + band.scattering_per_m, band.pattern_per_m()});
             sum += weight;
         }
         for (Wave& wave : waves_)
@@ -30,7 +30,7 @@ Medium::Medium(const scene::WaterOptics& optics, bool spectral) : index_(optics.
             glm::dvec3 weight(0.0);
             weight[c] = 1.0;
             waves_.push_back({weight, optics.attenuation_per_m()[c], optics.backscattering_per_m[c],
-                              optics.attenuation_per_m()[c]});
+                              optics.attenuation_per_m()[c], optics.attenuation_per_m()[c]});
         }
     }
     double mirrored = 0.0;
@@ -50,13 +50,10 @@ glm::dvec3 Medium::transmittance(double path_m) const {
 }
 
 glm::dvec3 Medium::pattern_transmittance(double path_m) const {
-    constexpr double scattered_wide = 0.6; // as in medium.glsl: Petzold's share beyond 2.5 degrees
-    const glm::dvec3 all = transmittance(path_m), straight = image_transmittance(path_m);
-    glm::dvec3 out;
-    for (int k = 0; k < 3; ++k)
-        out[k] = all[k] * std::pow(std::clamp(straight[k] / std::max(all[k], 1e-9), 0.0, 1.0),
-                                   scattered_wide);
-    return out;
+    glm::dvec3 sum(0.0);
+    for (const Wave& wave : waves_)
+        sum += wave.weight * std::exp(-wave.pattern_per_m * path_m);
+    return sum;
 }
 
 glm::dvec3 Medium::image_transmittance(double path_m) const {

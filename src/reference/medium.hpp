@@ -27,7 +27,7 @@ public:
 private:
     struct Wave {
         glm::dvec3 weight;
-        double attenuation_per_m, backscattering_per_m, beam_per_m;
+        double attenuation_per_m, backscattering_per_m, beam_per_m, pattern_per_m;
     };
     std::vector<Wave> waves_;
     double index_, sky_entering_;

@@ -222,7 +222,7 @@ void Renderer::prepare_sunlight(const scene::View& view) {
     double scattered_per_m = scene_.optics.bands.empty() ? 0.0 : 1e9;
     for (const scene::WaterBand& band : scene_.optics.bands)
         scattered_per_m =
-            std::min(scattered_per_m, 0.6 * (band.scattering_per_m - band.backscattering_per_m));
+            std::min(scattered_per_m, band.pattern_per_m() - band.attenuation_per_m());
     if (scattered_per_m > 0.0)
         asked.deepest_m = std::min(asked.deepest_m, std::log(50.0) / scattered_per_m);
     sunlight_.set(waves_->sea(), asked);

@@ -16,6 +16,7 @@ struct Band {
     glm::dvec3 weight;
     double attenuation_per_m, backscattering_per_m;
     double beam_per_m; ///< a + b
+    double pattern_per_m;
 };
 
 /// One lobe of the fit: a Gaussian of two widths.
@@ -31,7 +32,7 @@ std::vector<Band> bands_of(const WaterOptics& optics, bool spectral) {
         for (int c = 0; c < 3; ++c) {
             glm::dvec3 weight(0.0);
             weight[c] = 1.0;
-            out.push_back({weight, k[c], optics.backscattering_per_m[c], k[c]});
+            out.push_back({weight, k[c], optics.backscattering_per_m[c], k[c], k[c]});
         }
         return out;
     }
@@ -40,7 +41,7 @@ std::vector<Band> bands_of(const WaterOptics& optics, bool spectral) {
         const WaterBand band = band_at(optics.bands, nm);
         const glm::dvec3 weight = sunlight_colour(nm) * (nm == 400 || nm == 700 ? 0.5 : 1.0);
         out.push_back({weight, band.attenuation_per_m(), band.backscattering_per_m,
-                       band.absorption_per_m + band.scattering_per_m});
+                       band.absorption_per_m + band.scattering_per_m, band.pattern_per_m()});
         sum += weight;
     }
     for (Band& band : out)
@@ -154,12 +155,14 @@ WaterTable make_water_table(const WaterOptics& optics, bool spectral) {
         row.reserve(WaterTable::texels);
     for (int i = 0; i < WaterTable::texels; ++i) {
         const double x = table.path_m(i);
-        glm::dvec3 transmitted(0.0), integral(0.0), source(0.0), thrown_row(0.0), beam(0.0);
+        glm::dvec3 transmitted(0.0), integral(0.0), source(0.0), thrown_row(0.0), beam(0.0),
+            pattern(0.0);
         for (const Band& band : bands) {
             const double c = band.attenuation_per_m, left = std::exp(-c * x);
             const double per_m = band.backscattering_per_m / (2.0 * pi);
             transmitted += band.weight * left;
             beam += band.weight * std::exp(-band.beam_per_m * x);
+            pattern += band.weight * std::exp(-band.pattern_per_m * x);
             source += band.weight * (per_m * left);
             integral +=
                 band.weight *
@@ -173,6 +176,7 @@ WaterTable make_water_table(const WaterOptics& optics, bool spectral) {
         table.rows[2].emplace_back(source);
         table.rows[3].emplace_back(thrown_row);
         table.rows[4].emplace_back(beam);
+        table.rows[5].emplace_back(pattern);
     }
     return table;
 }

@@ -14,6 +14,8 @@
 ///   3  B, diffuse reflectance of the surface seen from a bed at depth x, water included
 ///   4  sum of w exp(-(a + b) x), of light that has not been scattered at all: what still draws a
 ///      thing's edges. Where only channels are known, row 0.
+///   5  the same of light that has not been scattered wide (WaterBand::pattern_per_m): what still
+///      draws patterns a few degrees wide
 /// Sources  observer: Wyman, Sloan & Shirley (2013), a fit to CIE 1931; sun: Planck at 5772 K (IAU
 ///          2015); sRGB: IEC 61966-2-1. The physics: docs/physics/water.md.
 #include "scene/water_optics.hpp"
@@ -32,7 +34,7 @@ struct WaterTable {
     double longest_m = 1.0;                    ///< the last texel's path
     double greatest_attenuation_per_m = 0.0;   ///< of any wavelength
     double sky_entering = 1.0;                 ///< share of an even sky that a flat surface lets in
-    std::array<std::vector<glm::vec3>, 5> rows;
+    std::array<std::vector<glm::vec3>, 6> rows;
 
     /// The path at a texel [m]: shortest_m (exp(i s) - 1).
     double path_m(int texel) const;

@@ -11,6 +11,11 @@
 
 namespace tarn::scene {
 
+/// Share of what water scatters forwards that goes off by more than some 2.5 degrees; the rest
+/// still lands where caustics and patterns of the bed are. Petzold's mean phase function (Mobley
+/// 1994, table 3.10), rounded.
+inline constexpr double scattered_wide = 0.6;
+
 /// What the water does at one wavelength.
 struct WaterBand {
     double wavelength_nm = 0.0;
@@ -18,6 +23,11 @@ struct WaterBand {
     double scattering_per_m = 0.0;     ///< b, [0, 1000]
     double backscattering_per_m = 0.0; ///< b_b, part of b, [0, b]
     double attenuation_per_m() const { return absorption_per_m + backscattering_per_m; }
+    /// Of light that still draws patterns a few degrees wide: what is scattered narrowly counts as
+    /// not scattered.
+    double pattern_per_m() const {
+        return attenuation_per_m() + scattered_wide * (scattering_per_m - backscattering_per_m);
+    }
 };
 
 struct WaterOptics {

@@ -64,8 +64,12 @@ TEST(MediumGpu, TransmittanceAndWhatIsThrownBackAgree) {
             MediumFunction(optics, "result.rgb = thrown_back(water, scale, x.x);")(x);
         const auto drawn =
             MediumFunction(optics, "result.rgb = image_transmittance(water, scale, x.x);")(x);
+        const auto pattern =
+            MediumFunction(optics, "result.rgb = pattern_transmittance(water, scale, x.x);")(x);
         for (std::size_t i = 0; i < x.size(); ++i)
             for (int k = 0; k < 3; ++k) {
+                ASSERT_NEAR(pattern[i][k], medium.pattern_transmittance(x[i].x)[k], 3e-4)
+                    << optics.name << " " << x[i].x << " m, channel " << k;
                 ASSERT_NEAR(drawn[i][k], medium.image_transmittance(x[i].x)[k], 3e-4)
                     << optics.name << " " << x[i].x << " m, channel " << k;
                 // Of what falls in, white is 1; the oracle sums in other steps (2.5 nm).
