@@ -77,6 +77,16 @@ vec3 sunlight_left(float way_m, Sunlit sunlit) {
     return left;
 }
 
+// Light that is scattered wide comes from around a place as wide as this share of its path: some 12 degrees.
+const float scattered_spread = 0.2;
+
+// Share of the light from a place in the water that still draws its patterns.
+float pattern_left(float path_m) {
+    const vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
+    float drawn = dot(luminance, pattern_transmittance(water, view.water, path_m));
+    return clamp(drawn / max(dot(luminance, transmittance(water, view.water, path_m)), 1e-9), 0.0, 1.0);
+}
+
 // Radiance that leaves the ground where a part ended: land in the air, bed under water.
 //
 //   path_m   length of the way from the camera, for the footprint of a pixel
@@ -100,6 +110,11 @@ vec3 ground_radiance(Part part, End end, float path_m, float water_m, Sunlit sun
         float near_water = water_share(heights, view.grid.xy, end.cell, end.inside);
         albedo = ground_albedo(nodes * view.grid.z, z - shore, part.in_water, near_water, view.look.x - shore,
                                view.look.y - shore, length(gradient) / view.grid.z, footprint);
+        float blurred = part.in_water ? 1.0 - pattern_left(water_m) : 0.0;
+        if (blurred > 0.02) // what was scattered wide on the way to the eye comes from all around
+            albedo = mix(albedo, ground_albedo(nodes * view.grid.z, z - shore, true, near_water, view.look.x - shore,
+                                               view.look.y - shore, length(gradient) / view.grid.z,
+                                               max(footprint, scattered_spread * water_m)), blurred);
         if (on(TARN_FLAG_ORTHO) && !part.in_water) {
             vec2 at = (nodes - view.ortho.xy) / view.ortho.zw;
             if (all(greaterThan(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)))) {

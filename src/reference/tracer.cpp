@@ -382,7 +382,15 @@ private:
     glm::dvec3 bed(const Hit& hit, double level, double footprint, double water_m) const {
         double slope = 0.0;
         const glm::dvec3 normal = normal_at(hit, slope);
-        const glm::dvec3 colour = albedo(hit, true, level, slope, footprint);
+        glm::dvec3 colour = albedo(hit, true, level, slope, footprint);
+        const glm::dvec3 luminance(0.2126, 0.7152, 0.0722);
+        const double drawn =
+            std::clamp(glm::dot(luminance, medium_.pattern_transmittance(water_m)) /
+                           std::max(glm::dot(luminance, medium_.transmittance(water_m)), 1e-9),
+                       0.0, 1.0);
+        // What was scattered wide on the way to the eye comes from some 12 degrees around.
+        colour += (1.0 - drawn) *
+                  (albedo(hit, true, level, slope, std::max(footprint, 0.2 * water_m)) - colour);
         const double depth = std::max(level - hit.point.z, 0.0);
         glm::dvec3 irradiance = light_.sky_irradiance * medium_.sky_entering() *
                                 medium_.transmittance(sky_slant * depth + water_m) *
