@@ -48,9 +48,9 @@ void give(int slice, ivec2 at, float share) {
         atomicAdd(flux[place(slice, at)], amount);
 }
 
-#if TARN_SUNLIGHT_METHOD == 0
+#if TARN_SUNLIGHT_METHOD == 0 && !defined(TARN_SUNLIGHT_DIRECT)
 // Most photons of a group land close together: they are gathered in shared memory, of which each texel is added to
-// the tile once.
+// the tile once. (Software GL, which has no such memory, is quicker without: TARN_SUNLIGHT_DIRECT.)
 const int window = 32;
 shared uint gathered[window * window];
 ivec2 window_corner;
@@ -174,6 +174,13 @@ void main() {
     Photon photons[4];
     for (int c = 0; c < 4; ++c)
         photons[c] = photon_of_lattice(2 * texel + ivec2(c & 1, c >> 1), heights_m[c]);
+#ifdef TARN_SUNLIGHT_DIRECT
+    for (int c = 0; c < 4; ++c) {
+        vec2 from = (vec2(2 * texel + ivec2(c & 1, c >> 1)) + 0.5) * a_tile;
+        for (int k = 0; k < slices; ++k)
+            splat(k, landing(from, heights_m[c], photons[c], depth_of_slice(k)), worth * photons[c].share);
+    }
+#else
     int index = int(gl_LocalInvocationIndex);
     for (int i = index; i < window * window; i += 256)
         gathered[i] = 0u;
@@ -191,6 +198,7 @@ void main() {
             gathered[i] = 0u;
         }
     }
+#endif
 #elif TARN_SUNLIGHT_METHOD == 1
     uint lot = hash(uint(texel.x + texels * texel.y) ^ uint(cascade) << 28);
     vec2 from = (vec2(texel) + vec2(lot & 0xffffu, lot >> 16) / 65536.0) * a_tile;

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/text.hpp"
+#include "gpu/context.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -110,7 +111,8 @@ const SunlightVolume::Passes& SunlightVolume::passes() {
     const int number = int(settings_.method) - int(scene::Caustics::splat);
     const std::string defined =
         text("#define TARN_SUNLIGHT_METHOD ", number, "\n#define TARN_SUNLIGHT_PHOTONS ",
-             settings_.method == scene::Caustics::splat ? settings_.photons : 1, "\n");
+             settings_.method == scene::Caustics::splat ? settings_.photons : 1, "\n",
+             gpu::is_software() ? "#define TARN_SUNLIGHT_DIRECT 1\n" : "");
     const std::string from_flux =
         std::string("#define TARN_SUNLIGHT_FROM_FLUX 1\n") +
         (settings_.method == scene::Caustics::photon_map ? "#define TARN_SUNLIGHT_BILATERAL 1\n"
