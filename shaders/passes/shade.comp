@@ -18,6 +18,9 @@ layout(binding = TARN_TEXTURE_SKY) uniform sampler2D sky_table;
 layout(binding = TARN_TEXTURE_WATER) uniform sampler2D water;
 layout(binding = TARN_TEXTURE_ORTHO) uniform sampler2D ortho;
 layout(binding = TARN_TEXTURE_OVERLAY) uniform sampler2D overlay;
+#ifdef TARN_LAND_SHADOW
+layout(binding = TARN_TEXTURE_LAND_SHADOW) uniform sampler2D land_shadow;
+#endif
 layout(binding = TARN_IMAGE_RADIANCE, rgba32f) uniform image2D radiance_image;
 layout(binding = TARN_IMAGE_HITS, rgba32ui) uniform readonly uimage2D hits[3];
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
@@ -148,6 +151,21 @@ vec3 through_air(Part part, float length_m, vec3 radiance) {
 }
 #endif
 
+#ifdef TARN_LAND_SHADOW
+// Share of a part's way, by what it brings to the eye, that lies in the sun.
+float lit_way(Part part, float from_m, float length_m, vec3 below) {
+    const int looks = 4;
+    float fall = (1.0 - part.direction.z / below.z) * view.optics.w, last = exp(-fall * length_m), sum = 0.0;
+    float lot = fract(0.5 + 0.61803399 * view.offset.z);
+    for (int i = 0; i < looks; ++i) {
+        float share = (float(i) + lot) / float(looks);
+        float t = abs(fall * length_m) < 1e-3 ? share * length_m : -log(1.0 - share * (1.0 - last)) / fall;
+        sum += lit_share(land_shadow, view, part, from_m + t, below);
+    }
+    return sum / float(looks);
+}
+#endif
+
 // Radiance that the water itself scatters towards the eye along a part, between two places of it.
 //
 //   water_m  path in the water before the part
@@ -155,6 +173,9 @@ vec3 through_air(Part part, float length_m, vec3 radiance) {
 vec3 scattered_radiance(Part part, float from_m, float to_m, float water_m, float focus) {
     float sink = -part.direction.z, depth = max(depth_of(part) + sink * from_m, 0.0), length_m = to_m - from_m;
     vec3 below = sun_below(view.sun.xyz, view.optics.x);
+#if defined(TARN_LAND_SHADOW) && !(defined(TARN_SHAFTS) && TARN_SHAFTS > 0)
+    focus *= lit_way(part, from_m, length_m, below);
+#endif
     return focus * sun_irradiance_below(below) *
                path_radiance(water, view.water, 1.0 / below.z, depth, sink, water_m + from_m, length_m) +
            view.sky_irradiance.rgb * (view.optics.z * sky_slant) *

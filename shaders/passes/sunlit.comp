@@ -13,6 +13,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
 layout(binding = TARN_TEXTURE_WATER) uniform sampler2D water;
 layout(binding = TARN_TEXTURE_SUNLIGHT) uniform sampler2DArray sunlight_tiles;
+#ifdef TARN_LAND_SHADOW
+layout(binding = TARN_TEXTURE_LAND_SHADOW) uniform sampler2D land_shadow;
+#endif
 layout(binding = TARN_TEXTURE_AMPLITUDE) uniform sampler2D amplitudes;
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
 layout(binding = TARN_BLOCK_SUNLIGHT, std140) uniform Sunlight { SunlightBlock sunlight; };
@@ -80,9 +83,13 @@ float shaft_focus(Part part, float depth_m, float sink, float slant, float befor
         float t = abs(fall * length_m) < 1e-3 ? share * length_m : -log(1.0 - share * (1.0 - last)) / fall;
         float depth = max(depth_m + sink * t, 0.0);
         float focus = focus_at(place_of(part, t), depth, view.camera.w * (path_m + t));
-        sum += (focus - 1.0) * exp(-beam * max(start + rate * t, 0.0));
+        focus = 1.0 + (focus - 1.0) * exp(-beam * max(start + rate * t, 0.0));
+#ifdef TARN_LAND_SHADOW
+        focus *= lit_share(land_shadow, view, part, t, sun_below(view.sun.xyz, view.optics.x));
+#endif
+        sum += focus;
     }
-    return 1.0 + sum / float(TARN_SHAFTS);
+    return sum / float(TARN_SHAFTS);
 }
 #endif
 

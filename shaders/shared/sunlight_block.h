@@ -13,7 +13,7 @@ using vec4 = glm::vec4;
 #define TARN_TEXTURE_SUNLIGHT 13     // RG16F array: sunlight at a slice and at the next deeper one
 #define TARN_IMAGE_SUNLIGHT 0        // 0-3: rg16f arrays, levels being written
 
-#define TARN_SUNLIGHT_UNIT 4096.0    // flux of one photon of flat water
+#define TARN_SUNLIGHT_UNIT 262144.0  // flux of a texel below flat water; 16384 times that fit
 
 struct SunlightBlock {
     vec4 beam;        // xy: metres east and north that flat water's beam comes to a metre deeper, z: slices of a

@@ -26,6 +26,7 @@ using ivec4 = glm::ivec4;
 #define TARN_TEXTURE_OVERLAY 5 // RGBA32F: rasterised things: radiance, and distance [m] in alpha, 0 = none
 #define TARN_TEXTURE_SKY_SOFT 11 // RGBA16F (RGB32F on software GL): the same, quicker to look up, for sums
 #define TARN_TEXTURE_WATER 12  // RGBA32F: what water does to light by colour (lib/medium.glsl)
+#define TARN_TEXTURE_LAND_SHADOW 14 // R32F: below this height [m above heights.x] land hides the sun
 #define TARN_TEXTURE_BEAMS 4   // R32F: free path of each tile of 8 x 8 pixels [m]
 #define TARN_IMAGE_RADIANCE 0  // rgba32f
 #define TARN_IMAGE_DISTANCE 1  // r32f
@@ -53,11 +54,11 @@ struct ViewBlock {
     vec4 heights;         // x: scene height of z = 0 [m], y: ground [m per unit texel],
                           // z: water offset [m], w: water [m per unit texel]
     vec4 sun;             // xyz: towards the sun, w: angular radius of its disc [rad]
-    vec4 sun_irradiance;  // rgb: on a plane facing the sun, w: -
+    vec4 sun_irradiance;  // rgb: on a plane facing the sun, w: height over which the edge of land's shadow is spread [m]
     vec4 sky_irradiance;  // rgb: on a horizontal plane, w: -
     vec4 air;             // rgb: extinction at the lake's level [1/m], w: 1 / height over which it falls by e [1/m]
     vec4 optics;          // x: index of refraction of the water, y: greatest path in it [m], z: share of an even
-                          // sky's light that flat water lets in, w: -
+                          // sky's light that flat water lets in, w: how fast light falls in it, about [1/m]
     vec4 water;           // of the water's table: lib/medium.glsl, water_row()
     vec4 look;            // x: tree line [m], y: snow line [m], z: lake level [m] (all above z = 0),
                           // w: uniform ground albedo, < 0 = the colour scheme

@@ -520,28 +520,45 @@ private:
         return out;
     }
 
-    /// The sun's light that the water scatters into a part of the view, shafts and all.
+    /// The sun's light that the water scatters into a part of the view: what lies in the sun (the
+    /// bed's own shadow is not asked for, as on the GPU), shafts and all.
     glm::dvec3 sun_scattered(glm::dvec3 origin, glm::dvec3 direction, double depth, double before_m,
                              double length) const {
         const double slant = 1.0 / sun_below_.z, sink = -direction.z;
-        if (!tiles_ || settings_.shaft_steps == 0 || !(length > 0.0))
-            return medium_.path_radiance(slant, depth, sink, before_m, length);
-        constexpr int pieces = 96; // each longer than the one before it
+        const bool shafts = tiles_ && settings_.shaft_steps > 0;
+        const auto between = [&](double from, double to) {
+            return medium_.path_radiance(slant, std::max(depth + sink * from, 0.0), sink,
+                                         before_m + from, to - from);
+        };
+        if (!(shafts || settings_.shadows) || !(length > 0.0))
+            return between(0.0, length);
         const glm::dvec3 luminance(0.2126, 0.7152, 0.0722);
+        const int pieces = shafts ? 96 : 24; // each longer than the one before it
         glm::dvec3 sum(0.0);
-        double from = 0.0;
+        double lit_from = 0.0; // pieces in the sun, side by side, are one
         for (int k = 0; k < pieces; ++k) {
-            const double to = length * std::pow((k + 1.0) / pieces, 2.0), t = 0.5 * (from + to);
+            const double from = length * std::pow(double(k) / pieces, 2.0),
+                         to = length * std::pow((k + 1.0) / pieces, 2.0), t = 0.5 * (from + to);
             const double deep = std::max(depth + sink * t, 0.0), way = slant * deep + before_m + t;
+            const glm::dvec3 enters = origin + t * direction + deep / sun_below_.z * sun_below_;
+            if (settings_.shadows &&
+                blocked(enters + glm::dvec3(0, 0, lift_m_), light_.sun_direction, infinity)) {
+                if (!shafts && from > lit_from)
+                    sum += between(lit_from, from);
+                lit_from = to;
+                continue;
+            }
+            if (!shafts)
+                continue;
             const double beam =
                 std::clamp(glm::dot(luminance, medium_.pattern_transmittance(way)) /
                                std::max(glm::dot(luminance, medium_.transmittance(way)), 1e-12),
                            0.0, 1.0);
-            sum += medium_.path_radiance(slant, std::max(depth + sink * from, 0.0), sink,
-                                         before_m + from, to - from) *
+            sum += between(from, to) *
                    (1.0 + (focus_at(origin + t * direction, deep, 1) - 1.0) * beam);
-            from = to;
         }
+        if (!shafts && length > lit_from)
+            sum += between(lit_from, length);
         return sum;
     }
 

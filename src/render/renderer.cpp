@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/text.hpp"
+#include "scene/land_shadow.hpp"
 #include "scene/water_colour.hpp"
 
 #include <algorithm>
@@ -97,7 +98,7 @@ void Renderer::upload_scene() {
 
 // A picture without haze runs a program that holds none of it.
 void Renderer::use_shade() {
-    const auto key = std::pair(hazy_, whole_sky_);
+    const std::string key = air_defines();
     if (!shade_.count(key))
         shade_[key] = gpu::ComputeProgram(
             gpu::load_shader(gpu::shader_root(), "passes/shade.comp", {}, air_defines()));
@@ -110,7 +111,8 @@ std::string Renderer::sunlight_defines() const {
 
 std::string Renderer::air_defines() const {
     return std::string(hazy_ ? "#define TARN_HAZE 1\n" : "") +
-           (whole_sky_ ? "#define TARN_WHOLE_SKY 1\n" : "");
+           (whole_sky_ ? "#define TARN_WHOLE_SKY 1\n" : "") +
+           (shadowed_ ? "#define TARN_LAND_SHADOW 1\n" : "");
 }
 
 void Renderer::use_walk(scene::Walk walk, double setting) {
@@ -182,6 +184,7 @@ void Renderer::prepare_waves(const scene::View& view) {
         if (!waves_)
             waves_.emplace();
         waves_->set(waves::make_sea(scene_.ground, scene_.water, scene_.lakes, asked));
+        sunlight_settings_.reset();
     }
     // In steps of a quarter, so that a little more wind needs no new bounds.
     double lift = 0.0;
@@ -225,10 +228,43 @@ void Renderer::prepare_sunlight(const scene::View& view) {
             std::min(scattered_per_m, band.pattern_per_m() - band.attenuation_per_m());
     if (scattered_per_m > 0.0)
         asked.deepest_m = std::min(asked.deepest_m, std::log(50.0) / scattered_per_m);
-    sunlight_.set(waves_->sea(), asked);
+    if (sunlight_settings_ != asked) {
+        sunlight_.set(waves_->sea(), asked);
+        sunlight_settings_ = asked;
+    }
     sunlight_.on_pass = on_pass;
     sunlight_.update(*waves_);
     sunlight_.bind();
+}
+
+// Which water the sun's light comes into, by where it enters; where land hides none of it, no
+// program asks.
+void Renderer::prepare_land_shadow(const scene::View& view) {
+    const glm::dvec3 sun = view.lighting.sun_direction;
+    const glm::dvec3 light = view.lighting.sun_irradiance;
+    if (!view.settings.shadows || !(light.x + light.y + light.z > 0.0)) {
+        shadowed_ = false;
+        shadow_sun_.reset();
+        return;
+    }
+    if (shadow_sun_ != sun) {
+        shadow_sun_ = sun;
+        const auto shadow = scene::land_shadow(scene_, sun);
+        shadowed_ = shadow.has_value();
+        if (shadow) {
+            std::vector<float> heights;
+            heights.reserve(shadow->height_m.size());
+            for (const float h : shadow->height_m)
+                heights.push_back(float(double(h) - scene_.ground.offset_m));
+            land_shadow_ = gpu::Texture2D(GL_R32F, shadow->cols, shadow->rows, 1,
+                                          gpu::Filter::linear, "land's shadow");
+            land_shadow_.upload(GL_RED, GL_FLOAT, heights.data());
+            shadow_softness_m_ = shadow->softness_m;
+        }
+    }
+    block_.sun_irradiance.w = float(shadow_softness_m_);
+    if (shadowed_)
+        land_shadow_.bind(TARN_TEXTURE_LAND_SHADOW);
 }
 
 // The frame looks up what was summed over wavelengths here.
@@ -241,6 +277,15 @@ void Renderer::upload_water(bool spectral) {
         water_.upload(GL_RGBA, GL_FLOAT, table.packed().data());
         block_.water = table.scale();
         block_.optics.z = float(table.sky_entering);
+        // By the path after which a third of the luminance is left.
+        int texel = 1;
+        const auto luminance = [&](int i) {
+            const glm::vec3& c = table.rows[0][std::size_t(i)];
+            return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
+        };
+        while (texel < scene::WaterTable::texels - 1 && luminance(texel) > 0.3679f)
+            ++texel;
+        block_.optics.w = float(1.0 / table.path_m(texel));
     }
     water_.bind(TARN_TEXTURE_WATER);
 }
@@ -365,6 +410,7 @@ void Renderer::prepare(const scene::View& view) {
     use_walk(settings.walk, settings.walk_setting);
     hazy_ = light.visibility_m.has_value();
     whole_sky_ = light.sky.whole_turn;
+    prepare_land_shadow(view);
     use_shade();
     bounds_.prepare(walk_, false);
     bind_field(walk_, !under_water());
@@ -478,7 +524,7 @@ void Renderer::draw_tile() {
         glMemoryBarrier(images);
     }
     begins("shade");
-    (wavy_ones ? wavy_ones->shade : shade_.at({hazy_, whole_sky_})).use();
+    (wavy_ones ? wavy_ones->shade : shade_.at(air_defines())).use();
     glDispatchCompute(across, down, 1);
     begins("end");
 }

@@ -110,6 +110,7 @@ private:
     std::string air_defines() const;
     std::string sunlight_defines() const;
     void prepare_sunlight(const scene::View& view);
+    void prepare_land_shadow(const scene::View& view);
     void use_walk(scene::Walk walk, double setting);
     std::string walk_file() const;
     void prepare_waves(const scene::View& view);
@@ -131,13 +132,18 @@ private:
     gpu::Texture2D
         hits_[3]; ///< ends of the parts of the paths of one tile (shaders/lib/parts.glsl)
     gpu::Buffer view_buffer_, lakes_;
-    std::map<std::pair<bool, bool>, gpu::ComputeProgram> shade_; ///< by the next two
+    std::map<std::string, gpu::ComputeProgram> shade_; ///< by air_defines()
     bool hazy_ = false, whole_sky_ = false;
+    gpu::Texture2D land_shadow_;
+    double shadow_softness_m_ = 1.0;
+    bool shadowed_ = false;                ///< land's shadow lies on some of the water
+    std::optional<glm::dvec3> shadow_sun_; ///< as the shadow was worked out last
     FieldBounds bounds_;
     std::map<scene::Walk, WalkPasses> passes_;
     std::map<std::pair<scene::Walk, std::string>, WavyPasses> wavy_passes_;
     std::optional<WaveField> waves_;
     SunlightVolume sunlight_;
+    std::optional<SunlightSettings> sunlight_settings_; ///< as laid out last for this sea
     bool caustics_ = false; ///< waves focus the sun's light in this picture
     int shaft_steps_ = 0;   ///< places along a view that shafts of light are looked up at; 0: none
     gpu::Texture2D water_;  ///< the water's table (scene/water_colour.hpp) ...

@@ -117,9 +117,10 @@ TEST(CausticsGpu, PhotonAgrees) {
 // Under flat water every method gives exactly 1 everywhere, whatever the sun.
 TEST(CausticsGpu, FlatWaterIsOne) {
     for (const scene::Caustics method : all_methods)
-        for (const double elevation : {90.0, 40.0, 1.0}) {
+        for (const auto& [elevation, photons] :
+             {std::pair(90.0, 1), std::pair(40.0, 1), std::pair(1.0, 1), std::pair(40.0, 4)}) {
             Tiles t(sea_of_one_wave(0.0, 1, 10.0, 128),
-                    {.sun = sun_at(elevation), .method = method});
+                    {.sun = sun_at(elevation), .method = method, .photons = photons});
             for (const int slice : {0, 7, 13})
                 for (const float v : t.sunlight.read(0, slice))
                     ASSERT_EQ(v, 1.0f) << int(method) << " " << elevation << " " << slice;

@@ -10,6 +10,7 @@
 #include "reference/surface.hpp"
 #include "reference/tracer.hpp"
 #include "render/renderer.hpp"
+#include "scene/land_shadow.hpp"
 #include "scene/presets.hpp"
 #include "scene/samples.hpp"
 #include "scene/water_types.hpp"
@@ -155,6 +156,35 @@ TEST(Picture, ASecchiDiscDisappearsWhereItWasAsked) {
 
 // Water by its wavelengths, from crystal to mud and brown: the frame's one look-up against sums
 // over 120 wavelengths at every pixel.
+// A low sun: half of the lake, and the water in it, lies in the shadow of the land. A shadow's edge
+// in the water is a cell's blur on the GPU.
+TEST(Picture, LandShadesTheWaterItself) {
+    scene::Scene scene = scene::mountain_lake(257);
+    scene.lakes[0].bed = Bed::unknown; // nothing but water
+    const glm::dvec3 sun = glm::normalize(glm::dvec3(0.9, 0.3, 0.12));
+    ASSERT_TRUE(scene::land_shadow(scene, sun).has_value());
+    test_support::context();
+    render::Renderer renderer(scene);
+    for (const char* preset : {"top", "shore", "dive"}) {
+        scene::View view;
+        view.lighting = scene::clear_sky(sun);
+        view.settings = {.width_px = 120, .height_px = 80, .samples = 1, .reflection = false};
+        view.camera = scene::preset_camera(scene, scene.lakes[0], preset, sun, 1.5);
+        const Image got = renderer.draw(view), truth = reference::trace(scene, view, {});
+        view.settings.shadows = false;
+        const Image lit = reference::trace(scene, view, {});
+        double off = 0.0, sum = 0.0, shaded = 0.0;
+        for (std::size_t i = 0; i < got.radiance.size(); ++i) {
+            off += std::abs(got.radiance[i].g - truth.radiance[i].g);
+            shaded += std::abs(lit.radiance[i].g - truth.radiance[i].g);
+            sum += truth.radiance[i].g;
+        }
+        std::printf("%s: off by %.2f %%; what shadows take %.1f %%\n", preset, 100 * off / sum,
+                    100 * shaded / sum);
+        EXPECT_LT(off / sum, 0.01) << preset;
+    }
+}
+
 // How far a black thing is seen level ahead, 2 m down: its contrast with the water falls to .02
 // at 3.912 / c (Koschmieder 1924), with c where the water lets through most; and a little sooner,
 // since what the eye takes together is less clear elsewhere. (Pure water is far clearer in the blue

@@ -7,6 +7,7 @@
 #include "reference/sky.hpp"
 #include "reference/surface.hpp"
 #include "reference/tracer.hpp"
+#include "scene/land_shadow.hpp"
 #include "scene/samples.hpp"
 
 #include <cmath>
@@ -256,4 +257,44 @@ TEST(Tracer, AbsorptionFollowsBeerLambertOnTheWayDownAndUp) {
     EXPECT_NEAR(got.r / (through * std::exp(-16 * 0.3)), 1.0, 1e-3);
     EXPECT_NEAR(got.g / (through * std::exp(-16 * 0.1)), 1.0, 1e-3);
     EXPECT_NEAR(got.b / (through * std::exp(-16 * 0.02)), 1.0, 1e-3);
+}
+
+// The land's shadow by doubling against a ray from each place towards the sun.
+TEST(Sun, LandsShadowIsThatOfRays) {
+    const scene::Scene scene = scene::mountain_lake(257);
+    for (const double rise : {0.05, 0.15, 0.4}) {
+        const glm::dvec3 sun = glm::normalize(glm::dvec3(0.8, -0.5, rise));
+        const auto shadow = scene::land_shadow(scene, sun);
+        if (!shadow) {
+            EXPECT_GT(rise, 0.2);
+            continue;
+        }
+        int right = 0, judged = 0, dark = 0;
+        const Heightfield& g = scene.ground;
+        for (int r = 2; r < shadow->rows - 2; r += 3)
+            for (int c = 2; c < shadow->cols - 2; c += 3) {
+                const double x = g.west_m +
+                                 (c + 0.5) * (g.size().cols - 1) * g.spacing_m / shadow->cols,
+                             y = g.north_m -
+                                 (r + 0.5) * (g.size().rows - 1) * g.spacing_m / shadow->rows;
+                const auto level = scene.water_level_m(x, y);
+                if (!level)
+                    continue;
+                const double over =
+                    shadow->height_m[std::size_t(r) * std::size_t(shadow->cols) + std::size_t(c)] -
+                    *level;
+                if (std::abs(over) < 2.0 * shadow->softness_m)
+                    continue; // the edge
+                const bool hidden =
+                    reference::trace_field(g, nullptr, {x, y, *level + 0.01}, sun, 1e9, -1e9)
+                        .has_value();
+                ++judged;
+                dark += hidden;
+                right += hidden == (over > 0.0);
+            }
+        std::printf("rise %.2f: %d of %d places right, %d in shadow\n", rise, right, judged, dark);
+        EXPECT_GE(right, 0.98 * judged) << rise;
+        if (rise < 0.1)
+            EXPECT_GT(dark, judged / 20);
+    }
 }
