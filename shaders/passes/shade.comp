@@ -155,7 +155,7 @@ vec3 through_air(Part part, float length_m, vec3 radiance) {
 // Share of a part's way, by what it brings to the eye, that lies in the sun.
 float lit_way(Part part, float from_m, float length_m, vec3 below) {
     const int looks = 4;
-    float fall = (1.0 - part.direction.z / below.z) * view.optics.w, last = exp(-fall * length_m), sum = 0.0;
+    float fall = max((1.0 - part.direction.z / below.z) * view.optics.w, -60.0 / max(length_m, 1e-4)), last = exp(-fall * length_m), sum = 0.0;
     float lot = fract(0.5 + 0.61803399 * view.offset.z);
     for (int i = 0; i < looks; ++i) {
         float share = (float(i) + lot) / float(looks);

@@ -62,6 +62,7 @@ float shared_focus(float length_m) {
 //   slant   path of sunlight per metre of depth
 float shaft_focus(Part part, float depth_m, float sink, float slant, float before_m, float length_m, float path_m) {
     const vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
+    length_m = max(length_m, 1e-4); // a mirrored part may end where it begins
     // All light has come a path that grows evenly: how fast what it brings falls, by its fall to about a third.
     float rate = 1.0 + slant * sink, start = slant * depth_m + before_m;
     float here = log(max(dot(luminance, water_row(water, view.water, 2, start)), 1e-12));
@@ -74,6 +75,7 @@ float shaft_focus(Part part, float depth_m, float sink, float slant, float befor
     float whole = max(start + 0.5 * rate * typical, 1e-3);
     float beam = log(max(dot(luminance, transmittance(water, view.water, whole)), 1e-12) /
                      max(dot(luminance, pattern_transmittance(water, view.water, whole)), 1e-12)) / whole; // 1/m of path
+    fall = max(fall, -60.0 / length_m); // what exp() can hold
     float last = exp(-fall * length_m);
     // Sixteen pixels side by side look at places of their own, and share what they find.
     float lot = order_of(ivec2(gl_LocalInvocationID.xy)) + fract(0.5 + 0.61803399 * view.offset.z) / 16.0;

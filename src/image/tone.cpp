@@ -13,6 +13,9 @@ double luminance(const glm::vec3& c) {
 } // namespace
 
 glm::vec3 into_gamut(glm::vec3 c) {
+    if (!std::isfinite(c.r + c.g +
+                       c.b)) // a fault of its maker, or another program's: black, no more
+        return glm::vec3(0.0f);
     const float least = std::min({c.r, c.g, c.b});
     if (least >= 0.0f)
         return c;
@@ -30,7 +33,8 @@ double auto_exposure(const Image& image, double key, double least, double greate
     std::vector<float> values;
     values.reserve(image.radiance.size());
     for (const glm::vec3& c : image.radiance)
-        values.push_back(static_cast<float>(luminance(c)));
+        if (const double value = luminance(c); std::isfinite(value))
+            values.push_back(static_cast<float>(value));
     if (values.empty())
         return 1.0;
     std::sort(values.begin(), values.end());

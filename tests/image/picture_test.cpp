@@ -267,6 +267,26 @@ TEST(Picture, RotomaAboveAndBelow) {
 }
 
 // The exact ways of finding a first hit on real ground and water: all classes of rays.
+// Looking up a bank from below, some mirrored rays end where they begin: shafts of light along no
+// way at all were no numbers, two of three million.
+TEST(Picture, ShaftsOfNoLengthAreNumbers) {
+    TARN_NEEDS_DATA("rotoma/rotoma_topobathy_32m.tif");
+    scene::Scene scene = from_data({"rotoma/rotoma_topobathy_32m.tif"}, 313.31);
+    scene.optics = scene::water_type("pure");
+    scene::View view;
+    view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.6, 0.4, 0.7)));
+    view.settings = {.width_px = 380, .height_px = 238, .samples = 36};
+    view.waves.model = waves::Model::jonswap;
+    view.waves.wind_m_per_s = 3.0;
+    view.camera = scene::look({2064, -256, 309.61}, 170, 35, 75);
+    test_support::context();
+    render::Renderer renderer(scene);
+    std::size_t wrong = 0;
+    for (const glm::vec3& c : renderer.draw(view).radiance)
+        wrong += !std::isfinite(c.r + c.g + c.b);
+    EXPECT_EQ(wrong, 0u);
+}
+
 TEST(Picture, ExactWalksMissNothingOnRotoma) {
     TARN_NEEDS_DATA("rotoma/rotoma_topobathy_32m.tif");
     test_support::context();

@@ -140,3 +140,19 @@ TEST(Annotate, TextAndBarsChangeThePicture) {
     EXPECT_GT(std::count_if(p.bytes.begin(), p.bytes.end(), [](int byte) { return byte > 180; }),
               60 * 10 * 3 + 100);
 }
+
+// One pixel that is no number stays black and leaves the others their exposure.
+TEST(Tone, APixelThatIsNoNumberDarkensNoOther) {
+    Image image{.width_px = 16, .height_px = 16, .radiance = {}, .distance_m = {}};
+    image.radiance.assign(256, glm::vec3(0.3f));
+    const double exposure = image::auto_exposure(image, 0.18, 0.1, 10.0);
+    image.radiance[40].g = std::numeric_limits<float>::quiet_NaN();
+    image.radiance[90].r = std::numeric_limits<float>::infinity();
+    EXPECT_DOUBLE_EQ(image::auto_exposure(image, 0.18, 0.1, 10.0), exposure);
+    const Picture shown = image::tone_map(image, exposure), linear = image::encode_linear(image);
+    for (const Picture* p : {&shown, &linear}) {
+        EXPECT_EQ(p->bytes[3 * 40 + 1], 0);
+        EXPECT_EQ(p->bytes[3 * 90], 0);
+        EXPECT_GT(p->bytes[0], 50);
+    }
+}
