@@ -3,6 +3,9 @@
 // what the water on its way scatters to the eye: caustics, and shafts of light. Run before passes/shade.comp.
 // Reads hits, surfaces and the tiles of sunlight; writes sunlit. One invocation a pixel of the tile and slot (z): from
 // above the refracted part; from below the first one, and in slot 1 the mirrored one.
+#ifndef TARN_WAVES
+#define TARN_WAVES 1 // nothing else focuses
+#endif
 #include "lib/medium.glsl"
 #include "lib/parts.glsl"
 #include "lib/sunlight.glsl"

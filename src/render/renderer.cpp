@@ -175,6 +175,8 @@ void Renderer::lift_water(double lift_m) {
 }
 
 void Renderer::prepare_waves(const scene::View& view) {
+    caustics_ = false; // until there are waves
+    shaft_steps_ = 0;
     waves::Settings asked = view.waves;
     const double time_s = asked.time_s;
     asked.time_s = 0.0;

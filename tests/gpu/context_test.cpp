@@ -38,6 +38,22 @@ TEST(Shaders, EveryPassCompiles) {
                 TARN_SHADER_ROOT, text("passes/", pass, ".comp"), {},
                 text("#define TARN_WAVES 1\n#define TARN_CASCADES ", cascades, "\n"))))
                 << pass;
+    for (const char* pass : {"sunlit", "shade"})
+        for (const char* shafts : {"0", "2"})
+            for (const char* more : {"", "#define TARN_LAND_SHADOW 1\n#define TARN_HAZE 1\n",
+                                     "#define TARN_LAND_SHADOW 1\n#define TARN_WHOLE_SKY 1\n"})
+                EXPECT_NO_THROW(gpu::ComputeProgram(gpu::load_shader(
+                    TARN_SHADER_ROOT, text("passes/", pass, ".comp"), {},
+                    text("#define TARN_WAVES 1\n#define TARN_CASCADES 3\n#define TARN_CAUSTICS 1\n",
+                         "#define TARN_SHAFTS ", shafts, "\n", more))))
+                    << pass << shafts << more;
+    for (const char* method : {"0", "1", "2", "3"})
+        for (const char* direct : {"", "#define TARN_SUNLIGHT_DIRECT 1\n"})
+            EXPECT_NO_THROW(gpu::ComputeProgram(gpu::load_shader(
+                TARN_SHADER_ROOT, "passes/sunlight_photons.comp", {},
+                text("#define TARN_SUNLIGHT_METHOD ", method, "\n#define TARN_SUNLIGHT_PHOTONS ",
+                     method[0] == '0' ? "2" : "1", "\n", direct))))
+                << method << direct;
 }
 
 TEST(Shaders, ErrorsNameTheFileAndTheAsker) {
