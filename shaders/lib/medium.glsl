@@ -28,6 +28,16 @@ vec3 image_transmittance(sampler2D table, vec4 scale, float path_m) { return wat
 // pattern_transmittance — what has not been scattered wide, and still draws caustics and patterns of the bed.
 vec3 pattern_transmittance(sampler2D table, vec4 scale, float path_m) { return water_row(table, scale, 5, path_m); }
 
+// drawn_place — a place along a way by its share, in [0, 1), of all that light falling off brings from it.
+//
+//   fall      of the light [1/m], < 0 where it grows along the way
+//   length_m  > 0
+//   returns   metres
+float drawn_place(float fall, float length_m, float share) {
+    float steep = max(fall * length_m, -60.0); // what exp() can hold
+    return abs(steep) < 1e-3 ? share * length_m : -log(1.0 - share * (1.0 - exp(-steep))) / steep * length_m;
+}
+
 // path_radiance — light scattered into a straight path by the water itself, per unit of the light's irradiance just
 //                 below the surface on a plane facing it.
 //

@@ -155,11 +155,10 @@ vec3 through_air(Part part, float length_m, vec3 radiance) {
 // Share of a part's way, by what it brings to the eye, that lies in the sun.
 float lit_way(Part part, float from_m, float length_m, vec3 below) {
     const int looks = 4;
-    float fall = max((1.0 - part.direction.z / below.z) * view.optics.w, -60.0 / max(length_m, 1e-4)), last = exp(-fall * length_m), sum = 0.0;
+    float fall = (1.0 - part.direction.z / below.z) * view.optics.w, sum = 0.0;
     float lot = fract(0.5 + 0.61803399 * view.offset.z);
     for (int i = 0; i < looks; ++i) {
-        float share = (float(i) + lot) / float(looks);
-        float t = abs(fall * length_m) < 1e-3 ? share * length_m : -log(1.0 - share * (1.0 - last)) / fall;
+        float t = drawn_place(fall, length_m, (float(i) + lot) / float(looks));
         sum += lit_share(land_shadow, view, part, from_m + t, below);
     }
     return sum / float(looks);
@@ -173,8 +172,11 @@ float lit_way(Part part, float from_m, float length_m, vec3 below) {
 vec3 scattered_radiance(Part part, float from_m, float to_m, float water_m, float focus) {
     float sink = -part.direction.z, depth = max(depth_of(part) + sink * from_m, 0.0), length_m = to_m - from_m;
     vec3 below = sun_below(view.sun.xyz, view.optics.x);
-#if defined(TARN_LAND_SHADOW) && !(defined(TARN_SHAFTS) && TARN_SHAFTS > 0)
-    focus *= lit_way(part, from_m, length_m, below);
+#ifdef TARN_LAND_SHADOW
+#if defined(TARN_SHAFTS) && TARN_SHAFTS > 0
+    if (from_m > 0.0) // what begins at the eye has it from passes/sunlit.comp
+#endif
+        focus *= lit_way(part, from_m, length_m, below);
 #endif
     return focus * sun_irradiance_below(below) *
                path_radiance(water, view.water, 1.0 / below.z, depth, sink, water_m + from_m, length_m) +

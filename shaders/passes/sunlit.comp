@@ -78,14 +78,11 @@ float shaft_focus(Part part, float depth_m, float sink, float slant, float befor
     float whole = max(start + 0.5 * rate * typical, 1e-3);
     float beam = log(max(dot(luminance, transmittance(water, view.water, whole)), 1e-12) /
                      max(dot(luminance, pattern_transmittance(water, view.water, whole)), 1e-12)) / whole; // 1/m of path
-    fall = max(fall, -60.0 / length_m); // what exp() can hold
-    float last = exp(-fall * length_m);
     // Sixteen pixels side by side look at places of their own, and share what they find.
     float lot = order_of(ivec2(gl_LocalInvocationID.xy)) + fract(0.5 + 0.61803399 * view.offset.z) / 16.0;
     float sum = 0.0;
     for (int i = 0; i < TARN_SHAFTS; ++i) {
-        float share = (float(i) + lot) / float(TARN_SHAFTS);
-        float t = abs(fall * length_m) < 1e-3 ? share * length_m : -log(1.0 - share * (1.0 - last)) / fall;
+        float t = drawn_place(fall, length_m, (float(i) + lot) / float(TARN_SHAFTS));
         float depth = max(depth_m + sink * t, 0.0);
         float focus = focus_at(place_of(part, t), depth, view.camera.w * (path_m + t));
         focus = 1.0 + (focus - 1.0) * exp(-beam * max(start + rate * t, 0.0));

@@ -98,10 +98,11 @@ void Renderer::upload_scene() {
 
 // A picture without haze runs a program that holds none of it.
 void Renderer::use_shade() {
-    const std::string key = air_defines();
-    if (!shade_.count(key))
-        shade_[key] = gpu::ComputeProgram(
+    gpu::ComputeProgram& shade = shade_[air_defines()];
+    if (shade.id() == 0)
+        shade = gpu::ComputeProgram(
             gpu::load_shader(gpu::shader_root(), "passes/shade.comp", {}, air_defines()));
+    calm_shade_ = &shade;
 }
 
 std::string Renderer::sunlight_defines() const {
@@ -526,7 +527,7 @@ void Renderer::draw_tile() {
         glMemoryBarrier(images);
     }
     begins("shade");
-    (wavy_ones ? wavy_ones->shade : shade_.at(air_defines())).use();
+    (wavy_ones ? wavy_ones->shade : *calm_shade_).use();
     glDispatchCompute(across, down, 1);
     begins("end");
 }

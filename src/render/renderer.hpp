@@ -80,9 +80,6 @@ public:
     const WaveField* waves() const { return wavy() ? &*waves_ : nullptr; }
     WaveField* waves() { return wavy() ? &*waves_ : nullptr; }
 
-    /// Sunlight below the waves of the last prepare(), where there is any.
-    const SunlightVolume* sunlight() const { return caustics_ ? &sunlight_ : nullptr; }
-
     /// Called before each pass with its name, and with "end" after the last: for timing. May be
     /// empty.
     std::function<void(const char*)> on_pass;
@@ -133,6 +130,7 @@ private:
         hits_[3]; ///< ends of the parts of the paths of one tile (shaders/lib/parts.glsl)
     gpu::Buffer view_buffer_, lakes_;
     std::map<std::string, gpu::ComputeProgram> shade_; ///< by air_defines()
+    const gpu::ComputeProgram* calm_shade_ = nullptr;  ///< of them, for this picture
     bool hazy_ = false, whole_sky_ = false;
     gpu::Texture2D land_shadow_;
     double shadow_softness_m_ = 1.0;

@@ -66,7 +66,6 @@ void SunlightVolume::set(const waves::Sea& sea, const SunlightSettings& settings
         const std::size_t texels = std::size_t(side) * std::size_t(side) * std::size_t(layers);
         flux_texels_ = texels;
         flux_ = gpu::Buffer(texels * sizeof(GLuint), nullptr);
-        bytes_ = texels * (4 + 4 * 4 / 3);
     }
     // How far a facet's slope throws the light off, on the mean of both axes.
     const glm::dvec2 middle = lean(settings.sun, {0, 0}, settings.index);

@@ -50,8 +50,6 @@ public:
     int side() const { return side_; }
     /// Sunlight on a slice against that below flat water; side()^2, row = y. Waits for the GPU.
     std::vector<float> read(int cascade, int slice) const;
-    std::size_t bytes() const { return bytes_; }
-    const shared::SunlightBlock& block() const { return block_; }
 
 private:
     struct Passes {
@@ -66,7 +64,7 @@ private:
     gpu::Buffer flux_, block_buffer_;
     gpu::TextureLayers tiles_;
     std::map<std::pair<scene::Caustics, int>, Passes> passes_;
-    std::size_t flux_texels_ = 0, bytes_ = 0;
+    std::size_t flux_texels_ = 0;
 };
 
 /// How strongly waves bend the sun's light: variance of the curvature of a cascade's surface

@@ -20,7 +20,7 @@ std::optional<LandShadow> land_shadow(const Scene& scene, glm::dvec3 sun, int mo
     out.rows = std::max(2, int(std::ceil(south_m / cell_m)));
     const double wide = east_m / out.cols, high = south_m / out.rows;
     const double fall = cell_m * sun.z / flat; // of the beam over a step
-    out.softness_m = 0.5 * fall;
+    out.softness_m = std::max(0.5 * fall, 0.01);
     const auto x_of = [&](int col) { return ground.west_m + (col + 0.5) * wide; };
     const auto y_of = [&](int row) { return ground.north_m - (row + 0.5) * high; };
     out.height_m.resize(std::size_t(out.cols) * std::size_t(out.rows));

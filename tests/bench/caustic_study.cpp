@@ -10,6 +10,7 @@
 #include "reference/caustics.hpp"
 #include "render/sunlight.hpp"
 #include "scene/samples.hpp"
+#include "support/sunlit_sea.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,13 +21,9 @@
 #include <memory>
 
 using namespace tarn;
+using test_support::sun_at, test_support::surface_of;
 
 namespace {
-
-glm::dvec3 sun_at(double elevation_deg) {
-    const double e = elevation_deg * M_PI / 180.0, a = 200.0 * M_PI / 180.0;
-    return {std::cos(e) * std::sin(a), std::cos(e) * std::cos(a), std::sin(e)};
-}
 
 waves::Sea sea_of(double wind_m_per_s, int texels = 512) {
     static const scene::Scene tank = scene::tank();
@@ -40,13 +37,6 @@ waves::Sea sea_of(double wind_m_per_s, int texels = 512) {
     std::fill(sea.amplitude.values.begin(), sea.amplitude.values.end(),
               std::array<std::uint8_t, 4>{255, 255, 255, 255});
     return sea;
-}
-
-reference::SurfaceFunction surface_of(const waves::Sea& sea) {
-    const auto fields = std::make_shared<reference::WaveSurface>(sea, 0.0);
-    return [fields](glm::dvec2 p) {
-        return reference::SurfacePoint{fields->height_m(p, 1e3), fields->slope(p, 1e3)};
-    };
 }
 
 struct Likeness {

@@ -3,6 +3,7 @@
 #include "render/sunlight.hpp"
 #include "scene/samples.hpp"
 #include "support/gpu_function.hpp"
+#include "support/sunlit_sea.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,16 +12,12 @@
 #include <random>
 
 using namespace tarn;
+using test_support::sun_at, test_support::surface_of;
 
 namespace {
 
 constexpr scene::Caustics all_methods[] = {scene::Caustics::splat, scene::Caustics::photon_map,
                                            scene::Caustics::mesh, scene::Caustics::back};
-
-glm::dvec3 sun_at(double elevation_deg, double azimuth_deg = 200.0) {
-    const double e = elevation_deg * M_PI / 180.0, a = azimuth_deg * M_PI / 180.0;
-    return {std::cos(e) * std::sin(a), std::cos(e) * std::cos(a), std::sin(e)};
-}
 
 waves::Sea sea_of(double wind_m_per_s, int texels, int cascades) {
     static const scene::Scene tank = scene::tank();
@@ -79,13 +76,6 @@ double relative_l1(const std::vector<float>& got, const std::vector<double>& exp
         sum += expected[i];
     }
     return off / sum;
-}
-
-reference::SurfaceFunction surface_of(const waves::Sea& sea) {
-    const auto fields = std::make_shared<reference::WaveSurface>(sea, 0.0);
-    return [fields](glm::dvec2 p) {
-        return reference::SurfacePoint{fields->height_m(p, 1e3), fields->slope(p, 1e3)};
-    };
 }
 
 } // namespace
