@@ -1,15 +1,14 @@
 // `tarn render` — one picture, no display needed.
 #include "app/command.hpp"
 #include "app/console.hpp"
+#include "app/picture.hpp"
 #include "app/report.hpp"
 #include "app/view_options.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
-#include "geo/frame.hpp"
 #include "gpu/context.hpp"
 #include "image/compare.hpp"
 #include "image/files.hpp"
-#include "image/tone.hpp"
 #include "reference/tracer.hpp"
 #include "render/renderer.hpp"
 #include "scene_files/scene_folder.hpp"
@@ -26,105 +25,18 @@ namespace {
 
 struct Words {
     ViewWords view;
-    std::string scene, exposure = "auto", tone = "eye", against;
+    PictureWords picture;
+    std::string scene, against;
     std::vector<std::string> outputs;
     bool reference = false;
 };
 
-/// Bright enough for land in the given light; under water the picture itself decides.
-double choose_exposure(const Words& words, const Image& picture, const scene::Scene& scene,
-                       const scene::View& view) {
-    if (words.exposure != "auto") {
-        const double factor = parse_numbers("--exposure", words.exposure, 1)[0];
-        if (!(factor > 0.0))
-            throw Error("--exposure must be a positive factor, or auto");
-        return factor;
-    }
-    const scene::Lighting& light = view.lighting;
-    const double incident =
-        (light.sun_irradiance.y * std::max(light.sun_direction.z, 0.0) + light.sky_irradiance.y) /
-        3.14159265;
-    const double usual = 1.25 / std::max(incident, 1e-4);
-    const glm::dvec3& p = view.camera.position;
-    const auto water = scene.water_level_m(p.x, p.y);
-    const bool dive = water && p.z < *water;
-    return image::auto_exposure(picture, 0.25, dive ? usual * 0.2 : usual * 0.5,
-                                usual * (dive ? 400.0 : 2.0));
-}
-
-std::string describe_waves(const waves::Settings& s) {
-    std::string out = waves::name_of(s.model);
-    if (s.calm())
-        return out;
-    for (const waves::PlaneWave& w : s.list)
-        out += text("; ", w.amplitude_m, ",", w.length_m, ",", w.towards_deg, ",", w.phase_rad);
-    if (s.model != waves::Model::calm)
-        out += text("; wind ", s.wind_m_per_s, " m/s from ", s.wind_from_deg, " (grid)");
-    out += text("; time ", s.time_s, " s of ", s.loop_s, "; seed ", s.seed);
-    if (s.ripples.rain_drops_per_m2_s > 0.0)
-        out += text("; rain ", s.ripples.rain_drops_per_m2_s, " drops/(m^2 s)");
-    for (const waves::Poke& p : s.ripples.pokes)
-        out += text("; poke ", p.x_m, ",", p.y_m, ",", p.height_m, ",", p.radius_m, ",", p.time_s);
-    return out;
-}
-
-image::Metadata describe(const scene::Scene& scene, const scene::View& view,
-                         const std::string& device) {
-    const LakeRecord& lake =
-        scene.lake_at_level(scene.water_level_m(view.camera.position.x, view.camera.position.y)
-                                .value_or(scene.lakes.front().level_m));
-    const scene::Camera& c = view.camera;
-    const GeoPoint eye = geo::to_geo(scene.frame, {c.position.x, c.position.y});
-    const glm::dvec3& s = view.lighting.sun_direction;
-    const auto triple = [](const glm::dvec3& v) { return text(v.x, ",", v.y, ",", v.z); };
-    return {
-        {"Software", text("tarn ", TARN_VERSION)},
-        {"Title",
-         text(lake.name.empty() ? "Lake" : lake.name, " at ", fixed(lake.level_m, 2), " m")},
-        {"tarn:place", text(fixed(lake.position.lat_deg, 6), ",", fixed(lake.position.lon_deg, 6))},
-        {"tarn:level_m", text(lake.level_m)},
-        {"tarn:vertical_datum", scene.frame.vertical_datum},
-        {"tarn:bed", to_string(lake.bed)},
-        {"tarn:camera", text("x=", c.position.x, ",y=", c.position.y, ",z=", c.position.z,
-                             ",dx=", c.forward.x, ",dy=", c.forward.y, ",dz=", c.forward.z,
-                             ",ux=", c.up.x, ",uy=", c.up.y, ",uz=", c.up.z, ",fov=", c.fov_deg)},
-        {"tarn:camera_place", text(fixed(eye.lat_deg, 6), ",", fixed(eye.lon_deg, 6), " at ",
-                                   fixed(c.position.z, 2), " m")},
-        {"tarn:sun_direction", triple(s)},
-        {"tarn:visibility_m",
-         view.lighting.visibility_m ? text(*view.lighting.visibility_m) : "clear"},
-        {"tarn:water", text(scene.optics.name, "; a ", triple(scene.optics.absorption_per_m),
-                            " /m; b_b ", triple(scene.optics.backscattering_per_m),
-                            " /m at 620, 545, 450 nm; n ", scene.optics.index,
-                            view.settings.spectral && !scene.optics.bands.empty()
-                                ? text("; ", scene.optics.bands.size(), " bands")
-                                : std::string("; three channels"))},
-        {"tarn:waves", describe_waves(view.waves)},
-        {"tarn:renderer", device},
-        {"tarn:command", command_line()}};
-}
-
-Picture develop(const Words& words, const Image& picture, const scene::Scene& scene,
-                const scene::View& view) {
-    if (words.tone == "none") // values as they are, 1 = white
-        return image::encode_linear(picture);
-    return image::tone_map(picture, choose_exposure(words, picture, scene, view));
-}
-
-int run_render(Words& words) {
-    for (const std::string& output : words.outputs) {
-        const std::string extension = std::filesystem::path(output).extension().string();
-        if (extension != ".png" && extension != ".exr")
-            throw Error("-o '" + output + "': pictures are .png or .exr",
-                        "choose one of these endings");
-        const auto folder = std::filesystem::path(output).parent_path();
-        if (!folder.empty() && !std::filesystem::is_directory(folder))
-            throw Error(folder.string() + ": no such folder", "create it first");
-    }
+int run_render(Words& words, const scene_files::OptionList& options) {
+    check_outputs(words.outputs);
     if (!words.against.empty() && !std::filesystem::exists(words.against))
         throw Error("--against " + words.against + ": no such file",
                     "render it first, with --reference");
-    scene::Scene scene = scene_files::load(words.scene);
+    scene::Scene scene = load_scene(words.scene, words.view);
     const scene::View view = make_view(words.view, scene);
     if (view.settings.walk == scene::Walk::safety_exact ||
         view.settings.walk == scene::Walk::safety_radius)
@@ -153,11 +65,14 @@ int run_render(Words& words) {
     const double total_s = seconds();
     end_progress();
     for (const std::string& output : words.outputs) {
-        const auto metadata = describe(scene, view, device);
-        if (std::filesystem::path(output).extension() == ".exr")
-            image::write_exr(output, picture, metadata);
-        else
-            image::write_png(output, develop(words, picture, scene, view), metadata);
+        write_picture(output, words.picture, picture, scene, view,
+                      {.scene = words.scene,
+                       .options = options,
+                       .command = command_line(),
+                       .device = device,
+                       .time = describe_time(words.view, scene),
+                       .exposure = {},
+                       .more = {}});
         std::cout << "wrote " << output << " (" << picture.width_px << " x " << picture.height_px
                   << ", " << view.settings.samples
                   << (view.settings.samples == 1 ? " sample" : " samples") << ", "
@@ -192,11 +107,7 @@ void add_render(CLI::App& app, Run& run) {
                   "Z; may be repeated")
         ->required();
     add_view_options(*c, words->view);
-    c->add_option("--exposure", words->exposure, "factor on radiance, or auto")
-        ->capture_default_str();
-    c->add_option("--tone", words->tone, "tone curve of a .png; none: linear radiance, 1 = white")
-        ->check(CLI::IsMember({"eye", "none"}))
-        ->capture_default_str();
+    add_picture_options(*c, words->picture);
     c->add_flag("--reference", words->reference,
                 "by the double-precision CPU tracer: slow, needs no GPU");
     c->add_option("--against", words->against, "print how far the picture is from this .exr");
@@ -211,7 +122,7 @@ void add_render(CLI::App& app, Run& run) {
     c->callback([words, c, &run] {
         run = [words, c] {
             apply_settings_file(*c, words->view);
-            return run_render(*words);
+            return run_render(*words, given_options(*c));
         };
     });
 }

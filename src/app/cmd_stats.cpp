@@ -2,6 +2,7 @@
 #include "app/command.hpp"
 #include "app/console.hpp"
 #include "app/plot.hpp"
+#include "app/view_options.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
 #include "dem/stages.hpp"
@@ -26,31 +27,6 @@ struct Words {
     int lake = 1, neighbours = 8;
     bool json = false;
 };
-
-/// "300:320:0.5" (both ends included) or "300,310,313.31".
-std::vector<double> parse_levels(const std::string& words) {
-    std::vector<double> out;
-    if (words.find(':') == std::string::npos) {
-        const auto count = std::size_t(std::count(words.begin(), words.end(), ',')) + 1;
-        out = parse_numbers("--levels", words, count);
-    } else {
-        std::string commas = words;
-        std::replace(commas.begin(), commas.end(), ':', ',');
-        if (std::count(words.begin(), words.end(), ':') != 2)
-            throw Error("--levels " + words + " makes no table", "write FROM:TO:STEP or a list");
-        const auto v = parse_numbers("--levels", commas, 3);
-        if (!(v[2] > 0.0 && v[1] >= v[0]) || !((v[1] - v[0]) / v[2] < 10'000.0))
-            throw Error("--levels " + words + " makes no table",
-                        "write FROM:TO:STEP with FROM <= TO, a positive step and at most 10000 "
-                        "levels");
-        for (int i = 0; v[0] + i * v[2] <= v[1] + 1e-6 * v[2]; ++i)
-            out.push_back(v[0] + i * v[2]);
-    }
-    for (const double level : out)
-        if (!(std::abs(level) <= 12'000.0))
-            throw Error(text("--levels: ", level, " m is no level, must be in [-12000, 12000]"));
-    return out;
-}
 
 std::string csv(const dem::StageTable& table) {
     std::string out = "level_m,area_m2,true_area_m2,volume_m3,true_volume_m3,max_depth_m,"

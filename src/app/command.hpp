@@ -16,6 +16,7 @@ void add_info(CLI::App& app, Run& run);
 void add_stats(CLI::App& app, Run& run);
 void add_waves(CLI::App& app, Run& run);
 void add_render(CLI::App& app, Run& run);
+void add_sweep(CLI::App& app, Run& run);
 void add_bench(CLI::App& app, Run& run);
 void add_doctor(CLI::App& app, Run& run);
 

@@ -24,7 +24,7 @@ glm::dvec3 tint(double share) {
 
 } // namespace
 
-Picture draw_preview(const scene::Scene& scene, int side_px) {
+Picture draw_map(const scene::Scene& scene, int side_px) {
     const Heightfield& g = scene.ground;
     const double longest = std::max(g.size().cols, g.size().rows);
     const double step =
@@ -71,6 +71,12 @@ Picture draw_preview(const scene::Scene& scene, int side_px) {
     image::fill_box(out, margin, base - 4, margin + bar, base, 245);
     image::draw_text(out, margin, base - size / 2 - 4, size,
                      length >= 1000 ? fixed(length / 1000, 0) + " km" : fixed(length, 0) + " m");
+    return out;
+}
+
+Picture draw_preview(const scene::Scene& scene, int side_px) {
+    Picture out = draw_map(scene, side_px);
+    const int size = std::max(11, out.width_px / 45), margin = size;
     const LakeRecord& lake = scene.lakes.front();
     const std::string title = (lake.name.empty() ? "" : lake.name + ", ") + "level " +
                               fixed(lake.level_m, 2) + " m, " + fixed(lake.area_m2 / 1e6, 2) +

@@ -5,7 +5,10 @@
 
 namespace tarn::app {
 
-/// North up, at most `side_px` on the longer side.
+/// Relief, water and a scale bar; north up, at most `side_px` on the longer side.
+Picture draw_map(const scene::Scene& scene, int side_px);
+
+/// The same with the lake's name and figures.
 Picture draw_preview(const scene::Scene& scene, int side_px = 900);
 
 } // namespace tarn::app

@@ -9,6 +9,8 @@
 #include "scene/environment.hpp"
 #include "scene/presets.hpp"
 #include "scene/water_types.hpp"
+#include "scene_files/scene_folder.hpp"
+#include "scene_files/sidecar.hpp"
 #include "waves/wind_rose.hpp"
 
 #include <CLI/CLI.hpp>
@@ -126,6 +128,47 @@ scene::Camera parse_camera(const std::string& words, const scene::Scene& scene, 
 
 } // namespace
 
+std::vector<double> parse_levels(const std::string& words) {
+    std::vector<double> out;
+    if (words.find(':') == std::string::npos) {
+        const auto count = std::size_t(std::count(words.begin(), words.end(), ',')) + 1;
+        out = parse_numbers("--levels", words, count);
+    } else {
+        std::string commas = words;
+        std::replace(commas.begin(), commas.end(), ':', ',');
+        if (std::count(words.begin(), words.end(), ':') != 2)
+            throw Error("--levels " + words + " makes no table", "write FROM:TO:STEP or a list");
+        const auto v = parse_numbers("--levels", commas, 3);
+        if (!(v[2] > 0.0 && v[1] >= v[0]) || !((v[1] - v[0]) / v[2] < 10'000.0))
+            throw Error("--levels " + words + " makes no table",
+                        "write FROM:TO:STEP with FROM <= TO, a positive step and at most 10000 "
+                        "levels");
+        for (int i = 0; v[0] + i * v[2] <= v[1] + 1e-6 * v[2]; ++i)
+            out.push_back(v[0] + i * v[2]);
+    }
+    for (const double level : out)
+        if (!(std::abs(level) <= 12'000.0))
+            throw Error(text("--levels: ", level, " m is no level, must be in [-12000, 12000]"));
+    return out;
+}
+
+scene::Scene load_scene(const std::string& folder, const ViewWords& words) {
+    scene::Scene scene = scene_files::load(folder);
+    if (!words.level_m)
+        return scene;
+    const Progress progress = console_progress();
+    dem::Refill refill = make_refill(folder, scene, words.lake, progress);
+    refill.fill(*words.level_m, scene.ground, scene.water, scene.lakes, true);
+    end_progress();
+    return scene;
+}
+
+dem::Refill make_refill(const std::string& folder, const scene::Scene& scene, int lake_id,
+                        const Progress& progress) {
+    return dem::Refill(scene_files::load_heights(folder, scene), scene.ground, scene.water,
+                       scene.frame, scene.lakes, lake_id, progress);
+}
+
 glm::dvec3 sun_direction(const scene::Scene& scene, double julian_date_utc) {
     const GeoPoint place = scene.lakes.front().position;
     const geo::SunPosition sun = geo::sun_position(place, julian_date_utc);
@@ -240,6 +283,9 @@ void add_view_options(CLI::App& c, ViewWords& w) {
          "x,y [scene m]; above_ground, above_water or z [m]; heading, pitch or dx,dy,dz,ux,uy,uz; "
          "fov")
         ->capture_default_str();
+    c.add_option("--level", w.level_m, "water level to show [m]; default: as imported");
+    c.add_option("--lake", w.lake, "id of the lake whose level that is (tarn info)")
+        ->capture_default_str();
     c.add_option("--size", w.size, "WIDTHxHEIGHT [px], up to 16384 each")->capture_default_str();
     c.add_option("--samples", w.settings.samples, "rays a pixel, 1 to 1024")->capture_default_str();
     c.add_option("--time", w.time,
@@ -311,23 +357,31 @@ void add_view_options(CLI::App& c, ViewWords& w) {
 void apply_settings_file(CLI::App& c, const ViewWords& w) {
     if (w.settings_file.empty())
         return;
+    const auto take = [&](const std::string& name, const std::vector<std::string>& values) {
+        CLI::Option* option = c.get_option_no_throw("--" + name);
+        if (!option || name == "settings" || name == "help")
+            throw Error(w.settings_file + ": no option is called '" + name + "'",
+                        "the names are those of tarn render --help, without the dashes");
+        if (option->count() > 0)
+            return; // what is typed wins
+        option->add_result(values);
+        option->run_callback();
+    };
     std::ifstream in(w.settings_file);
     if (!in || !std::filesystem::is_regular_file(w.settings_file))
         throw Error(w.settings_file + ": cannot be read", "check the path given with --settings");
     try {
+        if (w.settings_file.ends_with(".json")) {
+            for (const auto& [name, value] : scene_files::read_sidecar(w.settings_file))
+                take(name, {value});
+            return;
+        }
         CLI::ConfigTOML format;
         format.arrayDelimiter('|'); // commas belong to the values
         for (const CLI::ConfigItem& item : format.from_config(in)) {
             if (item.name == "++" || item.name == "--")
                 continue; // marks of sections
-            CLI::Option* option = c.get_option_no_throw("--" + item.name);
-            if (!option || item.name == "settings" || item.name == "help" || !item.parents.empty())
-                throw Error(w.settings_file + ": no option is called '" + item.fullname() + "'",
-                            "the names are those of tarn render --help, without the dashes");
-            if (option->count() > 0)
-                continue; // what is typed wins
-            option->add_result(item.inputs);
-            option->run_callback();
+            take(item.parents.empty() ? item.name : item.fullname(), item.inputs);
         }
     } catch (const CLI::Error& error) {
         throw Error(w.settings_file + ": " + error.what(), "write one name = value a line");

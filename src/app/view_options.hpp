@@ -1,5 +1,6 @@
 #pragma once
 /// @file view_options.hpp  Camera, light and picture settings as people write them -> a View.
+#include "dem/refill.hpp"
 #include "scene/settings.hpp"
 
 #include <CLI/App.hpp>
@@ -30,6 +31,8 @@ struct ViewWords {
         wave_depth, shortest_wave, wave_patch, rain;
     std::optional<int> wave_cascades, wave_texels;
     std::optional<std::uint32_t> wave_seed;
+    std::optional<double> level_m; ///< of the lake that moves; default: as imported
+    int lake = 1;                  ///< its id
     std::string settings_file;
 };
 
@@ -57,6 +60,19 @@ waves::Settings make_waves(const ViewWords& words, const scene::Scene& scene);
 /// @throws tarn::Error  naming the file and the line's name, if that is no option or has a bad
 /// value
 void apply_settings_file(CLI::App& command, const ViewWords& words);
+
+/// Reads a scene folder, its lake at the level that the words ask for.
+/// @throws tarn::Error  naming what cannot be
+scene::Scene load_scene(const std::string& folder, const ViewWords& words);
+
+/// What moves the level of a lake of a scene just loaded; takes the folder's exact heights.
+/// @throws tarn::Error
+dem::Refill make_refill(const std::string& folder, const scene::Scene& scene, int lake_id,
+                        const Progress& progress);
+
+/// "300:320:0.5" (both ends included) or "300,310,313.31": levels [m].
+/// @throws tarn::Error
+std::vector<double> parse_levels(const std::string& words);
 
 /// The view that the words ask for. Water optics given by hand are put into the scene.
 /// @throws tarn::Error  naming the option and what is wrong

@@ -5,88 +5,18 @@
 #include "dem/fill.hpp"
 #include "dem/flat.hpp"
 #include "dem/statistics.hpp"
+#include "dem/wetting.hpp"
 #include "geo/frame.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <queue>
 
 namespace tarn::dem {
 
 namespace {
 
-constexpr float never = std::numeric_limits<float>::infinity();
-
-/// The nodes that the scene shows as this lake: id 1.
-LakeOf footprint(const Heightfield& ground, const Heightfield& water, const LakeRecord& lake) {
-    LakeOf out(ground.size());
-    const std::uint16_t code = water.codes[lake.seed];
-    const auto wet = [&](Node n) {
-        return water.codes[n] == code && ground.elevation_m(n) < water.elevation_m(n);
-    };
-    std::vector<Node> seeds = lake.parts;
-    seeds.push_back(lake.seed);
-    for (const Node seed : seeds)
-        out[seed] = 1;
-    search<8>(
-        ground.size(), seeds,
-        [&](Node n) {
-            if (out[n] || !wet(n))
-                return false;
-            out[n] = 1;
-            return true;
-        },
-        [](Node) {});
-    return out;
-}
-
-/// For every node the height that water from the lake must reach to wet it: the least, over all
-/// ways, of the highest ground on the way (priority flood from the lake's shore). Within the lake
-/// that is the ground itself.
-Grid<float> wetting_heights(const Grid<float>& z, const LakeOf& lake, double level_m,
-                            double up_to_m, int neighbours) {
-    struct Step {
-        float height;
-        Node at;
-        bool operator<(const Step& other) const { return height > other.height; }
-    };
-    Grid<float> out(z.size, never);
-    std::priority_queue<Step> rim;
-    const auto joined = [&](Node a, Node b) {
-        return neighbours == 8 || a.col == b.col || a.row == b.row;
-    };
-    for (int row = 0; row < z.size.rows; ++row)
-        for (int col = 0; col < z.size.cols; ++col) {
-            const Node at{col, row};
-            if (!lake[at])
-                continue;
-            // What the scene shows as wet is wet at its level, even where the bed just reaches it.
-            out[at] = std::min(z[at], highest_wet(level_m, false));
-            each_neighbour(z.size, at, [&](Node n) {
-                // Lower ground beside the lake that the import kept dry lies behind a dam that
-                // the grid does not show: no way leads there directly.
-                if (joined(at, n) && !lake[n] && out[n] == never &&
-                    z[n] >= static_cast<float>(level_m)) {
-                    out[n] = z[n];
-                    rim.push({z[n], n});
-                }
-            });
-        }
-    while (!rim.empty()) {
-        const Step step = rim.top();
-        rim.pop();
-        if (double(step.height) > up_to_m)
-            break;
-        each_neighbour(z.size, step.at, [&](Node n) {
-            if (!joined(step.at, n) || lake[n] || out[n] != never || std::isnan(z[n]))
-                return;
-            out[n] = std::max(step.height, z[n]);
-            rim.push({out[n], n});
-        });
-    }
-    return out;
-}
+constexpr float never = never_wet;
 
 int count_pools(LakeOf& lake, const Box& box) {
     int pools = 0;
@@ -128,9 +58,10 @@ StageTable stage_table(const Grid<float>& z, const Heightfield& ground, const He
                             "start at its surface, or import with --bathymetry or --soundings");
     StageTable out;
     progress.report(0.0, "following the water");
-    LakeOf mask = footprint(ground, water, lake);
+    LakeOf mask(ground.size());
+    add_footprint(ground, water, lake, 1, mask);
     const double highest = *std::max_element(levels_m.begin(), levels_m.end());
-    const Grid<float> wets = wetting_heights(z, mask, lake.level_m, highest, neighbours);
+    const Grid<float> wets = wetting_heights(z, mask, 1, lake.level_m, highest, neighbours);
 
     progress.report(0.3, "looking for the pass");
     const Surface surface{z, ground.spacing_m, ground.west_m, ground.north_m};

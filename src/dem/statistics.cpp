@@ -86,7 +86,8 @@ double shoreline_length_m(double level_m, const Surface& ground, const LakeOf& l
                 if (is_wet[k] == is_wet[m])
                     continue;
                 const double a = std::abs(above[k]), b = std::abs(above[m]);
-                const double f = midway || a + b == 0.0 ? 0.5 : a / (a + b);
+                // Half way, too, to where there is no data.
+                const double f = midway || !(a + b > 0.0) ? 0.5 : a / (a + b);
                 x[crossings] = corner_x[k] + f * (corner_x[m] - corner_x[k]);
                 y[crossings] = corner_y[k] + f * (corner_y[m] - corner_y[k]);
                 ++crossings;

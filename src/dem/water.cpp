@@ -1,5 +1,7 @@
 #include "dem/water.hpp"
 
+#include "core/parallel.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -117,6 +119,53 @@ void pour(Heightfield& water, const LakeOf& lake_of, std::span<const double> lev
             if (lake_of[n] == 0 && (water.codes[n] == no_water_code || code < water.codes[n]))
                 water.codes[n] = code;
         });
+    });
+}
+
+void separate_and_pour(const Heightfield& original, const LakeOf& lake_of,
+                       std::span<const double> levels, Heightfield& ground, Heightfield& water) {
+    struct Codes {
+        std::uint16_t water, below, above;
+    };
+    std::vector<Codes> codes{{no_water_code, 0, 0}};
+    for (const double level : levels) {
+        const double exact = (level - original.offset_m) / original.scale_m;
+        const auto clamped = [](double code) {
+            return static_cast<std::uint16_t>(std::clamp(code, 0.0, 65535.0));
+        };
+        codes.push_back({code_of(water, level), clamped(std::ceil(exact) - 1.0),
+                         clamped(std::floor(exact) + 1.0)});
+    }
+    const int cols = lake_of.size.cols, rows = lake_of.size.rows;
+    share_out(rows, 0, [&](int first, int last) {
+        for (int row = first; row < last; ++row) {
+            const std::size_t start = lake_of.index({0, row});
+            const std::uint16_t* here = &lake_of.values[start];
+            const std::uint16_t* above = row > 0 ? here - cols : here;
+            const std::uint16_t* below = row + 1 < rows ? here + cols : here;
+            const std::uint16_t* from = &original.codes.values[start];
+            std::uint16_t* to = &ground.codes.values[start];
+            std::uint16_t* wet = &water.codes.values[start];
+            for (int col = 0; col < cols; ++col) {
+                if (const unsigned id = here[col]; id != 0) {
+                    wet[col] = codes[id].water;
+                    to[col] = std::min(from[col], codes[id].below);
+                    continue;
+                }
+                to[col] = from[col];
+                const int l = col > 0 ? col - 1 : col, r = col + 1 < cols ? col + 1 : col;
+                if ((above[l] | above[col] | above[r] | here[l] | here[r] | below[l] | below[col] |
+                     below[r]) == 0)
+                    continue;
+                for (const std::uint16_t* line : {above, here, below})
+                    for (const int c : {l, col, r})
+                        if (const unsigned id = line[c]; id != 0) {
+                            to[col] = std::max(to[col], codes[id].above);
+                            if (wet[col] == no_water_code || codes[id].water < wet[col])
+                                wet[col] = codes[id].water;
+                        }
+            }
+        }
     });
 }
 

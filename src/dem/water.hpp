@@ -37,4 +37,10 @@ std::size_t separate(Heightfield& ground, const LakeOf& lake_of, std::span<const
 /// nothing can show above the land.
 void pour(Heightfield& water, const LakeOf& lake_of, std::span<const double> levels_m);
 
+/// separate() and pour() at once, by all cores: for water that moves while somebody looks on.
+/// @param original  the ground as it was; `ground` (of the same size) becomes it, separated
+/// @param water     of empty_water()
+void separate_and_pour(const Heightfield& original, const LakeOf& lake_of,
+                       std::span<const double> levels_m, Heightfield& ground, Heightfield& water);
+
 } // namespace tarn::dem

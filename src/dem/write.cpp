@@ -111,6 +111,35 @@ void write_safety_radii(const std::filesystem::path& path, const Grid<std::uint8
     finish(std::move(out), path, written, messages);
 }
 
+void write_classes(const std::filesystem::path& path, const Grid<std::uint8_t>& classes,
+                   const std::vector<MapClass>& meanings, const Heightfield& place,
+                   const geo::Frame& frame, bool nodata) {
+    GdalMessages messages;
+    const ThreadOptions no_side_files{{"GDAL_PAM_ENABLED", "NO"}};
+    auto out = create(path, classes.size, 1, GDT_Byte,
+                      geo_transform(frame, place.west_m, place.north_m, place.spacing_m), frame.wkt,
+                      false, messages);
+    GDALRasterBand& band = *out->GetRasterBand(1);
+    GDALColorTable colours;
+    std::string legend;
+    for (std::size_t i = 0; i < meanings.size(); ++i) {
+        const MapClass& m = meanings[i];
+        const GDALColorEntry entry{m.red, m.green, m.blue, 255};
+        colours.SetColorEntry(int(i), &entry);
+        legend += (i ? "; " : "") + std::to_string(i) + " = " + m.name;
+    }
+    band.SetColorTable(&colours);
+    // GeoTIFF itself has no names of categories, so they stand in its description.
+    band.SetDescription(legend.c_str());
+    out->SetMetadataItem("TIFFTAG_IMAGEDESCRIPTION", legend.c_str());
+    if (nodata)
+        band.SetNoDataValue(0);
+    const CPLErr written = band.RasterIO(GF_Write, 0, 0, classes.size.cols, classes.size.rows,
+                                         const_cast<std::uint8_t*>(classes.values.data()),
+                                         classes.size.cols, classes.size.rows, GDT_Byte, 0, 0);
+    finish(std::move(out), path, written, messages);
+}
+
 void write_ortho(const std::filesystem::path& path, const Ortho& ortho, const geo::Frame& frame) {
     GdalMessages messages;
     const ThreadOptions no_side_files{{"GDAL_PAM_ENABLED", "NO"}};

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace tarn::dem {
 
@@ -23,6 +24,18 @@ void write_heights(const std::filesystem::path& path, const Grid<float>& heights
 /// lies between four nodes of `place`.
 void write_safety_radii(const std::filesystem::path& path, const Grid<std::uint8_t>& radii,
                         const Heightfield& place, const geo::Frame& frame);
+
+/// A class of a map and how it is drawn.
+struct MapClass {
+    std::string name;
+    std::uint8_t red = 0, green = 0, blue = 0;
+};
+
+/// UInt8 GeoTIFF of classes 0, 1, ... with their names and colours, on the grid of `place`.
+/// @param nodata  declare class 0 as nodata
+void write_classes(const std::filesystem::path& path, const Grid<std::uint8_t>& classes,
+                   const std::vector<MapClass>& meanings, const Heightfield& place,
+                   const geo::Frame& frame, bool nodata);
 
 void write_ortho(const std::filesystem::path& path, const Ortho& ortho, const geo::Frame& frame);
 

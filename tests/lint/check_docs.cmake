@@ -12,6 +12,11 @@ foreach(line IN LISTS commands)
     endif()
     execute_process(COMMAND ${TARN} ${command} --help OUTPUT_VARIABLE options COMMAND_ERROR_IS_FATAL ANY)
     file(READ ${page} text)
+    string(FIND "${text}" "the options of [tarn render](render.md)" at)
+    if(NOT at EQUAL -1) # explained there
+        file(READ ${ROOT}/docs/commands/render.md more)
+        string(APPEND text "${more}")
+    endif()
     # Options that the program has, and the page must explain.
     string(REGEX MATCHALL "--[a-z][a-z-]+" known "${options}")
     list(REMOVE_DUPLICATES known)

@@ -4,6 +4,7 @@
 #include "dem/fill.hpp"
 #include "dem/flat.hpp"
 #include "dem/lakes.hpp"
+#include "dem/refill.hpp"
 #include "dem/stages.hpp"
 #include "dem/statistics.hpp"
 #include "dem/voids.hpp"
@@ -581,6 +582,147 @@ TEST(Statistics, TrueAreaIsTheGeodesicOne) {
     EXPECT_GT(record.area_m2 / record.true_area_m2, 1.001);
     // Depth is 5 m everywhere: the true volume is the geodesic area times that.
     EXPECT_NEAR(*record.true_volume_m3 / (5.0 * geo::geodesic_area_m2(outline)), 1.0, 1e-5);
+}
+
+/// Two paraboloid basins with rims at 40 m, joined by a notch at 25 m; a third, shut off, whose
+/// lake stands at 30 m in 22 m deep ground, and a pass at 38 m to it.
+Grid<float> three_basins() {
+    Grid<float> z({361, 121}, 60.0f);
+    for (int r = 0; r < 121; ++r)
+        for (int c = 0; c < 361; ++c) {
+            const double y = (r - 60) * 5.0;
+            const auto bowl = [&](int middle, double low) {
+                const double x = (c - middle) * 5.0;
+                return low + 40.0 * (x * x + y * y) / 90'000.0;
+            };
+            double h = std::min({bowl(60, 0.0), bowl(180, 10.0), bowl(300, 22.0), 60.0});
+            if (std::abs(y) < 20.0 && c > 60 && c < 180)
+                h = std::min(h, 25.0);
+            if (std::abs(y) < 20.0 && c > 180 && c < 300)
+                h = std::min(h, 38.0);
+            z[{c, r}] = float(h);
+        }
+    for (int r = 0; r < 121; ++r) // a wall, so that nothing leaves below 60 m
+        for (int c = 0; c < 361; ++c)
+            if (r == 0 || c == 0 || r == 120 || c == 360)
+                z[{c, r}] = 60.0f;
+    return z;
+}
+
+struct Basins {
+    Grid<float> z = three_basins();
+    geo::Frame frame = geo::local_frame({45, 8});
+    std::vector<LakeRecord> lakes;
+    Heightfield ground, water;
+    Basins() {
+        LakeOf lake_of(z.size);
+        Marks marks(z.size);
+        const Node seeds[2] = {{60, 60}, {300, 60}};
+        fill_from(z, marks, highest_wet(20.0, false), std::span(&seeds[0], 1), 1, lake_of);
+        fill_from(z, marks, highest_wet(30.0, false), std::span(&seeds[1], 1), 2, lake_of);
+        const std::vector<double> levels = {20.0, 30.0};
+        for (int id = 1; id <= 2; ++id) {
+            LakeRecord lake;
+            lake.id = id;
+            lake.level_m = levels[std::size_t(id - 1)];
+            measure(lake, surface_of(z, 5.0), lake_of, boxes_of(lake_of, 2)[std::size_t(id - 1)],
+                    frame);
+            lakes.push_back(lake);
+        }
+        ground = quantise(z.values, z.size, 5.0, 4, levels);
+        water = empty_water(ground, levels);
+        separate(ground, lake_of, levels);
+        pour(water, lake_of, levels);
+    }
+    Refill refill(int id) const { return Refill(z, ground, water, frame, lakes, id, Progress{}); }
+};
+
+TEST(Refill, CountsWhatStageTablesCount) {
+    const Basins b;
+    const Refill refill = b.refill(1);
+    EXPECT_NEAR(refill.lowest_m(), 0.1, 1e-6);
+    ASSERT_TRUE(refill.spill_m());
+    EXPECT_NEAR(*refill.spill_m(), 60.0, 1e-6);
+    const std::vector<double> levels = {0.5, 10.0, 20.0, 24.9, 25.1, 30.0, 37.0, 39.0, 55.0};
+    const auto table =
+        stage_table(b.z, b.ground, b.water, b.frame, b.lakes[0], levels, 8, Progress{});
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        const WaterFigures f = refill.figures(levels[i]);
+        EXPECT_EQ(f.area_m2, table.stages[i].area_m2) << levels[i];
+        EXPECT_NEAR(f.true_area_m2, table.stages[i].true_area_m2, 1e-6 * f.true_area_m2);
+        EXPECT_NEAR(*f.volume_m3, *table.stages[i].volume_m3, 1e-9 * *f.volume_m3) << levels[i];
+        EXPECT_EQ(*f.max_depth_m, *table.stages[i].max_depth_m);
+        EXPECT_EQ(f.open_at_edge, table.stages[i].open_at_edge);
+    }
+}
+
+TEST(Refill, FillsAsAnImportWould) {
+    const Basins b;
+    Refill refill = b.refill(1);
+    Heightfield ground = b.ground, water = b.water;
+    std::vector<LakeRecord> lakes;
+    for (const double level : {24.0, 12.0, 31.0, 20.0, 5.0}) {
+        refill.fill(level, ground, water, lakes, true);
+        ASSERT_EQ(lakes.size(), 2u) << level;
+        LakeOf lake_of(b.z.size);
+        Marks marks(b.z.size);
+        const Node seeds[2] = {{60, 60}, {300, 60}};
+        fill_from(b.z, marks, highest_wet(level, false), std::span(&seeds[0], 1), 1, lake_of);
+        fill_from(b.z, marks, highest_wet(30.0, false), std::span(&seeds[1], 1), 2, lake_of);
+        LakeRecord lake;
+        lake.id = 1;
+        lake.level_m = level;
+        measure(lake, surface_of(b.z, 5.0), lake_of, boxes_of(lake_of, 2)[0], b.frame);
+        EXPECT_EQ(lakes[0].area_m2, lake.area_m2) << level;
+        EXPECT_NEAR(*lakes[0].volume_m3, *lake.volume_m3, 1e-9 * *lake.volume_m3) << level;
+        EXPECT_EQ(lakes[0].shoreline_m, lake.shoreline_m) << level;
+        EXPECT_EQ(lakes[0].west_north, lake.west_north);
+        EXPECT_EQ(lakes[0].east_south, lake.east_south);
+        // Water shows just where the lakes are, at their levels to the millimetre.
+        for (int r = 0; r < b.z.size.rows; ++r)
+            for (int c = 0; c < b.z.size.cols; ++c) {
+                const Node n{c, r};
+                const bool shows =
+                    water.codes[n] != no_water_code && ground.elevation_m(n) < water.elevation_m(n);
+                ASSERT_EQ(shows, lake_of[n] != 0) << level << " at " << c << ", " << r;
+                if (shows) {
+                    ASSERT_NEAR(water.elevation_m(n), lake_of[n] == 1 ? level : 30.0, 0.001);
+                }
+            }
+    }
+}
+
+TEST(Refill, DrownsALakeThatStandsLower) {
+    const Basins b;
+    Refill refill = b.refill(1);
+    Heightfield ground = b.ground, water = b.water;
+    std::vector<LakeRecord> lakes;
+    refill.fill(39.0, ground, water, lakes, false); // over the pass at 38 m
+    ASSERT_EQ(lakes.size(), 1u);
+    EXPECT_EQ(lakes[0].id, 1);
+    EXPECT_NEAR(water.elevation_m({300, 60}), 39.0, 0.001);
+    refill.fill(37.0, ground, water, lakes, false); // and gives it back
+    ASSERT_EQ(lakes.size(), 2u);
+    EXPECT_NEAR(water.elevation_m({300, 60}), 30.0, 0.001);
+}
+
+TEST(Refill, SaysWhichLevelsCanBeShown) {
+    Basins b;
+    const auto refused = [&](double level) {
+        try {
+            b.refill(1).figures(level);
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_NE(refused(-3.0).find("reach from 0.10 to 60.00 m"), std::string::npos) << refused(-3);
+    EXPECT_NE(refused(61.0).find("61 m"), std::string::npos);
+    EXPECT_NE(refused(NAN), "");
+    b.lakes[0].bed = Bed::unknown;
+    EXPECT_NE(refused(19.0).find("bed of lake 1 is unknown"), std::string::npos);
+    EXPECT_EQ(refused(21.0), "");
+    EXPECT_THROW(b.refill(7), Error);
 }
 
 TEST(Stages, OfTwoBasinsFollowTheirFormulas) {

@@ -1,0 +1,236 @@
+#include "app/picture.hpp"
+
+#include "app/command.hpp"
+#include "app/console.hpp"
+#include "core/error.hpp"
+#include "core/text.hpp"
+#include "geo/frame.hpp"
+#include "geo/sun.hpp"
+#include "image/annotate.hpp"
+#include "image/tone.hpp"
+#include "scene/exposure.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace tarn::app {
+
+namespace {
+
+std::string describe_waves(const waves::Settings& s) {
+    std::string out = waves::name_of(s.model);
+    if (s.calm())
+        return out;
+    for (const waves::PlaneWave& w : s.list)
+        out += text("; ", w.amplitude_m, ",", w.length_m, ",", w.towards_deg, ",", w.phase_rad);
+    if (s.model != waves::Model::calm)
+        out += text("; wind ", s.wind_m_per_s, " m/s from ", s.wind_from_deg, " (grid)");
+    out += text("; time ", s.time_s, " s of ", s.loop_s, "; seed ", s.seed);
+    if (s.ripples.rain_drops_per_m2_s > 0.0)
+        out += text("; rain ", s.ripples.rain_drops_per_m2_s, " drops/(m^2 s)");
+    for (const waves::Poke& p : s.ripples.pokes)
+        out += text("; poke ", p.x_m, ",", p.y_m, ",", p.height_m, ",", p.radius_m, ",", p.time_s);
+    return out;
+}
+
+} // namespace
+
+double choose_exposure(const std::string& words, const Image& picture, const scene::Scene& scene,
+                       const scene::View& view) {
+    if (words != "auto") {
+        const double factor = parse_numbers("--exposure", words, 1)[0];
+        if (!(factor > 0.0))
+            throw Error("--exposure must be a positive factor, or auto");
+        return factor;
+    }
+    const scene::ExposureRange range = scene::exposure_range(scene, view);
+    return image::auto_exposure(picture, range.key, range.least, range.greatest);
+}
+
+image::Metadata describe(const scene::Scene& scene, const scene::View& view,
+                         const std::string& device, const std::string& command) {
+    const LakeRecord& lake =
+        scene.lake_at_level(scene.water_level_m(view.camera.position.x, view.camera.position.y)
+                                .value_or(scene.lakes.front().level_m));
+    const scene::Camera& c = view.camera;
+    const GeoPoint eye = geo::to_geo(scene.frame, {c.position.x, c.position.y});
+    const glm::dvec3& s = view.lighting.sun_direction;
+    const auto triple = [](const glm::dvec3& v) { return text(v.x, ",", v.y, ",", v.z); };
+    return {
+        {"Software", text("tarn ", TARN_VERSION)},
+        {"Title",
+         text(lake.name.empty() ? "Lake" : lake.name, " at ", fixed(lake.level_m, 2), " m")},
+        {"tarn:place", text(fixed(lake.position.lat_deg, 6), ",", fixed(lake.position.lon_deg, 6))},
+        {"tarn:level_m", text(lake.level_m)},
+        {"tarn:vertical_datum", scene.frame.vertical_datum},
+        {"tarn:bed", to_string(lake.bed)},
+        {"tarn:camera", text("x=", c.position.x, ",y=", c.position.y, ",z=", c.position.z,
+                             ",dx=", c.forward.x, ",dy=", c.forward.y, ",dz=", c.forward.z,
+                             ",ux=", c.up.x, ",uy=", c.up.y, ",uz=", c.up.z, ",fov=", c.fov_deg)},
+        {"tarn:camera_place", text(fixed(eye.lat_deg, 6), ",", fixed(eye.lon_deg, 6), " at ",
+                                   fixed(c.position.z, 2), " m")},
+        {"tarn:sun_direction", triple(s)},
+        {"tarn:visibility_m",
+         view.lighting.visibility_m ? text(*view.lighting.visibility_m) : "clear"},
+        {"tarn:water", text(scene.optics.name, "; a ", triple(scene.optics.absorption_per_m),
+                            " /m; b_b ", triple(scene.optics.backscattering_per_m),
+                            " /m at 620, 545, 450 nm; n ", scene.optics.index,
+                            view.settings.spectral && !scene.optics.bands.empty()
+                                ? text("; ", scene.optics.bands.size(), " bands")
+                                : std::string("; three channels"))},
+        {"tarn:waves", describe_waves(view.waves)},
+        {"tarn:renderer", device},
+        {"tarn:command", command}};
+}
+
+Picture develop(const PictureWords& words, const Image& picture, double exposure) {
+    if (words.tone == "none") // values as they are, 1 = white
+        return image::encode_linear(picture);
+    return image::tone_map(picture, exposure);
+}
+
+void add_picture_options(CLI::App& c, PictureWords& w) {
+    c.add_option("--exposure", w.exposure, "factor on radiance, or auto")->capture_default_str();
+    c.add_option("--tone", w.tone, "tone curve of a .png; none: linear radiance, 1 = white")
+        ->check(CLI::IsMember({"eye", "none"}))
+        ->capture_default_str();
+    c.add_flag("--caption", w.caption, "below a .png a bar with place, level, date and scale");
+    c.add_flag("--sidecar", w.sidecar,
+               "beside the picture a .json that --settings makes it again from");
+}
+
+scene_files::OptionList given_options(const CLI::App& c) {
+    // Where to write, and what is not about the picture, is another question.
+    static const std::vector<std::string> others = {"output", "settings", "against", "help",
+                                                    "sidecar"};
+    scene_files::OptionList out;
+    for (const CLI::Option* option : c.get_options()) {
+        if (option->count() == 0 || option->get_lnames().empty())
+            continue;
+        const std::string name = option->get_lnames().front();
+        if (std::find(others.begin(), others.end(), name) != others.end())
+            continue;
+        std::string value;
+        for (const std::string& one : option->results())
+            value += (value.empty() ? "" : ",") + one;
+        out.emplace_back(name, value);
+    }
+    return out;
+}
+
+std::string command_of(const std::string& command, const std::string& scene,
+                       const scene_files::OptionList& options) {
+    const auto quoted = [](const std::string& word) {
+        const bool plain =
+            !word.empty() && word.find_first_of(" '\"\\$`*?;&|<>(){}[]#~!\n") == std::string::npos;
+        if (plain)
+            return word;
+        std::string out = "'";
+        for (const char c : word)
+            out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        return out + "'";
+    };
+    std::string out = "tarn " + command + " " + quoted(scene);
+    for (const auto& [name, value] : options)
+        out += " --" + name + (value == "true" ? "" : " " + quoted(value));
+    return out;
+}
+
+std::string describe_time(const ViewWords& words, const scene::Scene& scene) {
+    if (!words.environment.empty())
+        return "light of " + std::filesystem::path(words.environment).filename().string();
+    if (!words.sun.empty())
+        return "sun at azimuth, elevation " + words.sun;
+    if (!words.sun_direction.empty())
+        return "sun towards " + words.sun_direction;
+    const GeoPoint place = scene.lakes.front().position;
+    return geo::format_time(words.time.empty() ? geo::default_time(place)
+                                               : geo::parse_time(words.time, place));
+}
+
+Picture add_caption(const Picture& picture, const Image& image, const scene::Scene& scene,
+                    const scene::View& view, const std::string& time) {
+    const int size = std::max(12, std::min(picture.width_px / 60, picture.height_px / 24));
+    const int bar = 2 * size;
+    Picture out = picture;
+    out.height_px += bar;
+    out.bytes.resize(std::size_t(out.width_px) * std::size_t(out.height_px) *
+                         std::size_t(out.channels),
+                     std::uint8_t(24));
+    const LakeRecord& lake =
+        scene.lake_at_level(scene.water_level_m(view.camera.position.x, view.camera.position.y)
+                                .value_or(scene.lakes.front().level_m));
+    std::string words = (lake.name.empty() ? text(fixed(lake.position.lat_deg, 4), ", ",
+                                                  fixed(lake.position.lon_deg, 4))
+                                           : lake.name) +
+                        "   level " + fixed(lake.level_m, 2) + " m";
+    if (lake.bed == Bed::unknown)
+        words += " (bed unknown)";
+    else if (lake.bed == Bed::estimated)
+        words += " (bed ESTIMATED)";
+    words += "   " + time;
+    const int base = out.height_px - bar / 2 + size / 3;
+    image::draw_text(out, size, base, size, words);
+    // How long a bar is at what the middle of the picture shows: the scale changes over it.
+    const std::size_t middle = std::size_t(image.height_px / 2) * std::size_t(image.width_px) +
+                               std::size_t(image.width_px / 2);
+    const double distance = std::abs(double(image.distance_m[middle]));
+    if (std::isfinite(distance) && distance > 0.0) {
+        const double metre_px =
+            image.height_px /
+            (2.0 * std::tan(0.5 * view.camera.fov_deg * 3.14159265358979 / 180.0) * distance);
+        const double metres = 0.12 * image.width_px / metre_px;
+        const double decade = std::pow(10.0, std::floor(std::log10(metres)));
+        const double length = decade * (metres / decade >= 5 ? 5 : metres / decade >= 2 ? 2 : 1);
+        const int px = int(std::lround(length * metre_px));
+        const std::string label =
+            (length >= 1000 ? fixed(length / 1000, 0) + " km"
+             : length >= 1  ? fixed(length, 0) + " m"
+                            : fixed(100 * length, 0) + " cm") +
+            (view.camera.forward.z < -0.999 ? ""
+             : distance >= 1000             ? ", " + fixed(distance / 1000, 1) + " km away"
+             : distance >= 10               ? ", " + fixed(distance, 0) + " m away"
+                                            : ", " + fixed(distance, 1) + " m away");
+        const int right = out.width_px - size, wide = int(0.55 * size * double(label.size()));
+        image::fill_box(out, right - wide - size - px, base - size / 3 - 2, right - wide - size,
+                        base - size / 3 + 2, 235);
+        image::draw_text(out, right - wide, base, size, label);
+    }
+    return out;
+}
+
+void check_outputs(const std::vector<std::string>& outputs) {
+    for (const std::string& output : outputs) {
+        const std::string extension = std::filesystem::path(output).extension().string();
+        if (extension != ".png" && extension != ".exr")
+            throw Error("-o '" + output + "': pictures are .png or .exr",
+                        "choose one of these endings");
+        const auto folder = std::filesystem::path(output).parent_path();
+        if (!folder.empty() && !std::filesystem::is_directory(folder))
+            throw Error(folder.string() + ": no such folder", "create it first");
+    }
+}
+
+void write_picture(const std::string& output, const PictureWords& words, const Image& picture,
+                   const scene::Scene& scene, const scene::View& view, const Record& record) {
+    auto metadata = describe(scene, view, record.device, record.command);
+    metadata.insert(record.more.begin(), record.more.end());
+    if (std::filesystem::path(output).extension() == ".exr") {
+        image::write_exr(output, picture, metadata);
+    } else {
+        const double exposure = record.exposure.value_or(
+            words.tone == "none" ? 1.0 : choose_exposure(words.exposure, picture, scene, view));
+        Picture out = develop(words, picture, exposure);
+        if (words.caption)
+            out = add_caption(out, picture, scene, view, record.time);
+        image::write_png(output, out, metadata);
+    }
+    if (words.sidecar)
+        write_beside(std::filesystem::path(output).replace_extension(".json").string(),
+                     scene_files::sidecar_json(std::filesystem::path(output).filename().string(),
+                                               record.scene, record.options, metadata));
+}
+
+} // namespace tarn::app

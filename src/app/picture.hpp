@@ -1,0 +1,68 @@
+#pragma once
+/// @file picture.hpp  From radiance to the file that people keep: exposure, caption, what is
+///                    written beside it.
+#include "app/view_options.hpp"
+#include "image/files.hpp"
+#include "scene_files/sidecar.hpp"
+
+#include <CLI/App.hpp>
+#include <string>
+
+namespace tarn::app {
+
+struct PictureWords {
+    std::string exposure = "auto", tone = "eye";
+    bool caption = false, sidecar = false;
+};
+
+/// Adds the options of PictureWords to a command.
+void add_picture_options(CLI::App& command, PictureWords& words);
+
+/// What was given on the command line or in a settings file, of the options that make the picture:
+/// enough to make it again.
+scene_files::OptionList given_options(const CLI::App& command);
+
+/// As a shell takes it.
+std::string command_of(const std::string& command, const std::string& scene,
+                       const scene_files::OptionList& options);
+
+/// @throws tarn::Error  unless `words` is "auto" or a positive number
+double choose_exposure(const std::string& words, const Image& picture, const scene::Scene& scene,
+                       const scene::View& view);
+
+/// What a picture's file says about it.
+/// @param command  that made it
+image::Metadata describe(const scene::Scene& scene, const scene::View& view,
+                         const std::string& device, const std::string& command);
+
+/// When the sun stands as the words say: "2026-06-21T15:00:00Z", or its place.
+std::string describe_time(const ViewWords& words, const scene::Scene& scene);
+
+/// Below the picture a bar with place, level, date and scale.
+Picture add_caption(const Picture& picture, const Image& image, const scene::Scene& scene,
+                    const scene::View& view, const std::string& time);
+
+/// Picture for the eye.
+/// @param exposure  factor on radiance
+Picture develop(const PictureWords& words, const Image& picture, double exposure);
+
+/// Are these names of pictures that can be written? For asking before long work.
+/// @throws tarn::Error
+void check_outputs(const std::vector<std::string>& outputs);
+
+struct Record {
+    std::string scene;               ///< folder, as typed
+    scene_files::OptionList options; ///< that make the picture
+    std::string command;             ///< the same in one line
+    std::string device;              ///< what drew it
+    std::string time;                ///< describe_time()
+    std::optional<double> exposure;  ///< instead of what the words say
+    image::Metadata more;            ///< to be said besides
+};
+
+/// Writes a picture, .png or .exr, and what the words ask for beside it.
+/// @throws tarn::Error  if a file cannot be written
+void write_picture(const std::string& output, const PictureWords& words, const Image& picture,
+                   const scene::Scene& scene, const scene::View& view, const Record& record);
+
+} // namespace tarn::app
