@@ -28,6 +28,9 @@ using ivec4 = glm::ivec4;
 #define TARN_TEXTURE_WATER 12  // RGBA32F: what water does to light by colour (lib/medium.glsl)
 #define TARN_TEXTURE_LAND_SHADOW 14 // R32F: below this height [m above heights.x] land hides the sun
 #define TARN_TEXTURE_BEAMS 4   // R32F: free path of each tile of 8 x 8 pixels [m]
+#define TARN_TEXTURE_PICTURE 15 // the picture so far: passes/display.comp, passes/meter.comp
+#define TARN_BUFFER_METER 1    // passes/meter.comp
+#define TARN_IMAGE_SCREEN 6    // rgba8: passes/display.comp; beams are written before a picture, this after it
 #define TARN_IMAGE_RADIANCE 0  // rgba32f
 #define TARN_IMAGE_DISTANCE 1  // r32f
 #define TARN_IMAGE_MAXIMA 2    // rg32f, written level of the maxima

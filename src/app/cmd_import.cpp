@@ -113,6 +113,13 @@ int run_import(Words& words) {
 
 } // namespace
 
+void import_for_viewing(const std::string& dem, const std::string& scene) {
+    Words words;
+    words.dem.dems = {dem};
+    words.scene = scene;
+    run_import(words);
+}
+
 void add_import(CLI::App& app, Run& run) {
     auto words = std::make_shared<Words>();
     dem::ImportOptions& options = words->dem.options;

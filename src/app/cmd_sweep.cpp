@@ -20,7 +20,6 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -140,14 +139,16 @@ scene_files::OptionList options_of(const scene_files::OptionList& common, const 
     return out;
 }
 
-/// Changes with anything that changes the picture: options, scene, program.
-std::string fingerprint(const std::string& scene, const std::string& command) {
-    std::ifstream in(fs::path(scene) / "scene.json", std::ios::binary);
-    const std::string json((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+/// Changes with anything that changes the picture: options, scene, camera, program.
+std::string fingerprint(const std::string& scene, const scene::Camera* camera,
+                        const std::string& command) {
+    std::string all = scene + command;
+    if (camera)
+        for (const glm::dvec3& v : {camera->position, camera->forward, camera->up})
+            all += text(" ", v.x, ",", v.y, ",", v.z);
     std::uint64_t sum = 14695981039346656037ull; // FNV-1a
-    for (const std::string* part : {&json, &command})
-        for (const char c : *part)
-            sum = (sum ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+    for (const char c : all)
+        sum = (sum ^ static_cast<unsigned char>(c)) * 1099511628211ull;
     std::ostringstream out;
     out << TARN_VERSION << "-" << std::hex << sum;
     return out.str();
@@ -157,7 +158,7 @@ class Sweep {
 public:
     Sweep(const Words& words, const scene_files::OptionList& common)
         : words_(words), common_(common), plan_(make_plan(words)),
-          scene_(scene_files::load(words.scene)) {}
+          scene_(scene_files::load(words.scene)), identity_(scene_files::identity(words.scene)) {}
 
     const Plan& plan() const { return plan_; }
     const scene::Scene& scene() const { return scene_; }
@@ -169,14 +170,21 @@ public:
                file(job).string();
     }
 
+    std::string mark(const Job& job) const {
+        const scene::Camera* named = nullptr;
+        for (const scene::NamedCamera& c : scene_.cameras)
+            if (c.name == plan_.cameras[job.camera].words)
+                named = &c.camera;
+        return fingerprint(identity_, named, command(job));
+    }
+
     /// Is the picture there, made from this scene with these options?
     bool done(const Job& job) const {
         if (!fs::exists(file(job)))
             return false;
         const fs::path sidecar = fs::path(file(job)).replace_extension(".json");
         try {
-            return scene_files::sidecar_says(sidecar, "tarn:job",
-                                             fingerprint(words_.scene, command(job)));
+            return scene_files::sidecar_says(sidecar, "tarn:job", mark(job));
         } catch (const Error&) {
             return false;
         }
@@ -202,6 +210,7 @@ private:
     const scene_files::OptionList& common_;
     Plan plan_;
     scene::Scene scene_; ///< as imported
+    std::string identity_;
     std::optional<dem::Refill> refill_;
     std::map<std::pair<std::size_t, std::size_t>, double> exposures_; ///< by camera and time
 };
@@ -280,7 +289,7 @@ int Sweep::draw(const std::vector<Job>& jobs) {
                            .device = context.renderer(),
                            .time = describe_time(words, scene),
                            .exposure = exposure_for(job, scene, view, picture),
-                           .more = {{"tarn:job", fingerprint(words_.scene, command(job))}}});
+                           .more = {{"tarn:job", mark(job)}}});
             ++count;
             end_progress();
             spdlog::info(

@@ -16,9 +16,14 @@ void add_info(CLI::App& app, Run& run);
 void add_stats(CLI::App& app, Run& run);
 void add_waves(CLI::App& app, Run& run);
 void add_render(CLI::App& app, Run& run);
+void add_view(CLI::App& app, Run& run);
 void add_sweep(CLI::App& app, Run& run);
 void add_bench(CLI::App& app, Run& run);
 void add_doctor(CLI::App& app, Run& run);
+
+/// A DEM with everything as the defaults of `tarn import` have it.
+/// @throws tarn::Error
+void import_for_viewing(const std::string& dem, const std::string& scene);
 
 /// The command line as typed, for provenance.
 const std::string& command_line();

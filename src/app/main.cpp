@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
     app::add_info(cli, run);
     app::add_stats(cli, run);
     app::add_waves(cli, run);
+    app::add_view(cli, run);
     app::add_render(cli, run);
     app::add_sweep(cli, run);
     app::add_bench(cli, run);

@@ -74,13 +74,14 @@ Refill::Refill(Grid<float> heights_m, const Heightfield& ground, const Heightfie
                         b.first = std::min(b.first, wets);
                         b.last = std::max(b.last, wets);
                         b.lowest = std::min(b.lowest, z_[n]);
+                        if (int(lake_of_[n]) == mark())
+                            lowest[std::size_t(r)] = std::min(lowest[std::size_t(r)], z_[n]);
                         if (wets < edge[std::size_t(r)] && at_edge(z_, n))
                             edge[std::size_t(r)] = wets;
                         highest[std::size_t(r)] = std::max(highest[std::size_t(r)], wets);
                     }
                 if (b.nodes == 0)
                     continue;
-                lowest[std::size_t(r)] = std::min(lowest[std::size_t(r)], b.lowest);
                 const double k =
                     geo::scale_factor(frame_, {ground_.x_m(c * block + 0.5 * (block - 1)),
                                                ground_.y_m(r * block + 0.5 * (block - 1))});

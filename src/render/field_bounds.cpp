@@ -1,6 +1,5 @@
 #include "render/field_bounds.hpp"
 
-#include "core/cone_map.hpp"
 #include "core/safety_radius.hpp"
 
 #include "shared/view_block.h"
@@ -101,9 +100,11 @@ void FieldBounds::build_radii() {
 }
 
 void FieldBounds::build_maxima() {
-    const auto root = gpu::shader_root();
-    const gpu::ComputeProgram block_maxima(gpu::load_shader(root, "passes/block_maxima.comp"));
-    const gpu::ComputeProgram reduce_maxima(gpu::load_shader(root, "passes/reduce_maxima.comp"));
+    if (block_maxima_.id() == 0) {
+        const auto root = gpu::shader_root();
+        block_maxima_ = gpu::ComputeProgram(gpu::load_shader(root, "passes/block_maxima.comp"));
+        reduce_maxima_ = gpu::ComputeProgram(gpu::load_shader(root, "passes/reduce_maxima.comp"));
+    }
     const GridSize size = scene_.ground.size();
     const int root_of_field = root_level(size);
     const int wide = next_power_of_two((size.cols - 1 + 3) / 4);
@@ -117,10 +118,10 @@ void FieldBounds::build_maxima() {
     bytes_ += std::size_t(w) * std::size_t(h) * 8 * 4 / 3;
     heights_.bind(TARN_TEXTURE_HEIGHTS);
     maxima_.bind(TARN_TEXTURE_BOUNDS);
-    block_maxima.use();
+    block_maxima_.use();
     maxima_.bind_image(TARN_IMAGE_MAXIMA, GL_WRITE_ONLY, 0);
     glDispatchCompute(groups(w), groups(h), 1);
-    reduce_maxima.use();
+    reduce_maxima_.use();
     for (int level = 0; level + 1 < levels; ++level) {
         glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
         maxima_.bind_image(TARN_IMAGE_MAXIMA, GL_WRITE_ONLY, level + 1);
@@ -139,7 +140,23 @@ gpu::Texture2D FieldBounds::build_cones(bool with_water, ConeScale& scale) {
         raised.offset_m += lift_m_;
     }
     const Heightfield& water = raised.codes.size.cols > 0 ? raised : scene_.water;
-    const ConeMap map = cone_map(scene_.ground, with_water ? &water : nullptr, shift);
+    return upload_cones(cone_map(scene_.ground, with_water ? &water : nullptr, shift), scale);
+}
+
+void FieldBounds::scene_changed() {
+    maxima_ = {};
+    ground_cones_ = {};
+    surface_cones_ = {};
+    radii_ = {};
+    bytes_ = 0;
+}
+
+void FieldBounds::give_cones(const ConeMap& ground, const ConeMap& surface) {
+    ground_cones_ = upload_cones(ground, ground_scale_);
+    surface_cones_ = upload_cones(surface, surface_scale_);
+}
+
+gpu::Texture2D FieldBounds::upload_cones(const ConeMap& map, ConeScale& scale) {
     gpu::Texture2D texture(GL_RG16, map.blocks.cols, map.blocks.rows, 1, gpu::Filter::nearest,
                            "cone map");
     texture.upload(GL_RG, GL_UNSIGNED_SHORT, map.texels.data());

@@ -1,5 +1,6 @@
 #pragma once
 /// @file field_bounds.hpp  What walks skip by, on the GPU: made when a walk first asks for it.
+#include "core/cone_map.hpp"
 #include "gpu/objects.hpp"
 #include "gpu/shader.hpp"
 #include "scene/settings.hpp"
@@ -35,6 +36,12 @@ public:
     /// for another height are dropped.
     void set_water_lift(double lift_m);
 
+    /// The scene has other heights now: everything is dropped.
+    void scene_changed();
+    bool needs_cones() const { return ground_cones_.id() == 0 || surface_cones_.id() == 0; }
+    /// See Renderer::give_cone_maps().
+    void give_cones(const ConeMap& ground, const ConeMap& surface);
+
     /// Of all that has been made.
     std::size_t bytes() const { return bytes_; }
 
@@ -44,10 +51,12 @@ private:
     void build_maxima();
     void build_radii();
     gpu::Texture2D build_cones(bool with_water, ConeScale& scale);
+    gpu::Texture2D upload_cones(const ConeMap& map, ConeScale& scale);
 
     const scene::Scene& scene_;
     const gpu::Texture2D& heights_;
     gpu::Texture2D maxima_, ground_cones_, surface_cones_, radii_;
+    gpu::ComputeProgram block_maxima_, reduce_maxima_;
     gpu::Sampler smooth_;
     ConeScale ground_scale_, surface_scale_;
     double lift_m_ = 0.0;

@@ -1,6 +1,7 @@
 #include "render/renderer.hpp"
 
 #include "core/error.hpp"
+#include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "scene/land_shadow.hpp"
 #include "scene/water_colour.hpp"
@@ -29,28 +30,36 @@ Renderer::Renderer(const scene::Scene& scene, std::optional<bool> rays_in_step)
     glBindBufferBase(GL_UNIFORM_BUFFER, TARN_BLOCK_VIEW, view_buffer_.id());
 }
 
-void Renderer::upload_scene() {
+void Renderer::upload_heights() {
     const Heightfield& ground = scene_.ground;
     const Heightfield& water = scene_.water;
     const GridSize size = ground.size();
-    heights_ =
-        gpu::Texture2D(GL_RG16, size.cols, size.rows, 1, gpu::Filter::nearest, "height field");
+    if (heights_.width_px() != size.cols || heights_.height_px() != size.rows)
+        heights_ =
+            gpu::Texture2D(GL_RG16, size.cols, size.rows, 1, gpu::Filter::nearest, "height field");
     std::vector<std::uint16_t> packed(2 * size.count());
-    for (std::size_t i = 0; i < size.count(); ++i) {
-        packed[2 * i] = ground.codes.values[i];
-        packed[2 * i + 1] = water.codes.values[i];
-    }
+    std::vector<double> tops(std::size_t(size.rows), -1e6), deeps(std::size_t(size.rows), 0.0);
+    share_out(size.rows, 0, [&](int first, int last) {
+        for (int row = first; row < last; ++row) {
+            double& top = tops[std::size_t(row)];
+            double& deep = deeps[std::size_t(row)];
+            std::size_t i = ground.codes.index({0, row});
+            for (int col = 0; col < size.cols; ++col, ++i) {
+                packed[2 * i] = ground.codes.values[i];
+                packed[2 * i + 1] = water.codes.values[i];
+                if (const std::uint16_t code = water.codes.values[i]; code != no_water_code) {
+                    const double level = water.offset_m + water.scale_m * code;
+                    top = std::max(top, level);
+                    deep = std::max(deep, level - ground.offset_m -
+                                              ground.scale_m * ground.codes.values[i]);
+                }
+            }
+        }
+    });
+    water_top_m_ = *std::max_element(tops.begin(), tops.end()); // none: below everything
+    deepest_m_ = *std::max_element(deeps.begin(), deeps.end());
     heights_.upload(GL_RG, GL_UNSIGNED_SHORT, packed.data());
     heights_bytes_ = packed.size() * sizeof packed[0];
-    block_.walk = {FieldBounds::root_level(size), FieldBounds::cone_shift, 0, 0};
-    water_top_m_ = -1e6; // where there is none: below everything
-    for (std::size_t i = 0; i < size.count(); ++i)
-        if (const std::uint16_t code = water.codes.values[i]; code != no_water_code) {
-            const double level = water.offset_m + water.scale_m * code;
-            water_top_m_ = std::max(water_top_m_, level);
-            deepest_m_ = std::max(deepest_m_, level - ground.offset_m -
-                                                  ground.scale_m * ground.codes.values[i]);
-        }
 
     // Heights on the GPU count from the ground's offset: float32 then resolves a fraction of a
     // code even for relief at some kilometres of altitude.
@@ -65,16 +74,41 @@ void Renderer::upload_scene() {
     std::sort(lakes.begin(), lakes.end(),
               [](const glm::vec4& a, const glm::vec4& b) { return a.x < b.x; });
     lakes_ = gpu::Buffer(lakes.size() * sizeof lakes[0], lakes.data());
-    block_.grid = {float(size.cols), float(size.rows), float(ground.spacing_m), 0.0f};
     block_.counts.w = static_cast<std::uint32_t>(lakes.size());
+    top_m_ = top - ground.offset_m;
+    block_.slab = {float(ground.min_elevation_m() - ground.offset_m) / block_.heights.y, 0.0f, 0.0f,
+                   0.0f};
+}
+
+void Renderer::scene_changed() {
+    upload_heights();
+    bounds_.scene_changed();
+    shadow_sun_.reset();
+    if (waves_)
+        waves_->set(
+            waves::make_sea(scene_.ground, scene_.water, scene_.lakes, waves_->sea().settings));
+    wave_time_s_.reset();
+    sunlight_settings_.reset();
+    lift_water(lift_m_);
+    gpu::check_gl("uploading the scene");
+}
+
+void Renderer::give_cone_maps(const ConeMap& ground, const ConeMap& surface) {
+    bounds_.give_cones(ground, surface);
+}
+
+void Renderer::upload_scene() {
+    const Heightfield& ground = scene_.ground;
+    const GridSize size = ground.size();
+    upload_heights();
+    block_.walk = {FieldBounds::root_level(size), FieldBounds::cone_shift, 0, 0};
+    block_.grid = {float(size.cols), float(size.rows), float(ground.spacing_m), 0.0f};
     block_.forward.w = float(scene::block_bottom_m(ground) - ground.offset_m);
 
     const float per_m = 1.0f / block_.heights.y;
     block_.base.z = float(1.0 / ground.spacing_m);
     block_.inverse_size = {1.0f / float(size.cols), 1.0f / float(size.rows), 1.0f, 1.0f};
     block_.bounds.w = block_.forward.w * per_m;
-    block_.slab = {float(ground.min_elevation_m() - ground.offset_m) * per_m, 0.0f, 0.0f, 0.0f};
-    top_m_ = top - ground.offset_m;
     lift_water(0.0);
 
     if (scene_.ortho) {
@@ -188,6 +222,7 @@ void Renderer::prepare_waves(const scene::View& view) {
             waves_.emplace();
         waves_->set(waves::make_sea(scene_.ground, scene_.water, scene_.lakes, asked));
         sunlight_settings_.reset();
+        wave_time_s_.reset();
     }
     // In steps of a quarter, so that a little more wind needs no new bounds.
     double lift = 0.0;
@@ -198,14 +233,17 @@ void Renderer::prepare_waves(const scene::View& view) {
         lift_water(lift);
     if (!wavy())
         return;
-    waves_->move_to(time_s);
-    prepare_sunlight(view);
+    const bool moved = wave_time_s_ != time_s;
+    if (moved)
+        waves_->move_to(time_s);
+    wave_time_s_ = time_s;
+    prepare_sunlight(view, moved);
     const Heightfield& ground = scene_.ground;
     waves_->bind({ground.x_m(double(block_.base.x)), ground.y_m(double(block_.base.y))}, lift);
 }
 
 // Caustics, where waves move, the sun shines and the light comes to a bed.
-void Renderer::prepare_sunlight(const scene::View& view) {
+void Renderer::prepare_sunlight(const scene::View& view, bool moved) {
     const scene::RenderSettings& settings = view.settings;
     caustics_ = settings.caustics != scene::Caustics::off && view.lighting.sun_direction.z > 0.0 &&
                 !waves_->sea().cascades.empty();
@@ -234,9 +272,11 @@ void Renderer::prepare_sunlight(const scene::View& view) {
     if (sunlight_settings_ != asked) {
         sunlight_.set(waves_->sea(), asked);
         sunlight_settings_ = asked;
+        moved = true;
     }
     sunlight_.on_pass = on_pass;
-    sunlight_.update(*waves_);
+    if (moved)
+        sunlight_.update(*waves_);
     sunlight_.bind();
 }
 
@@ -272,8 +312,8 @@ void Renderer::prepare_land_shadow(const scene::View& view) {
 
 // The frame looks up what was summed over wavelengths here.
 void Renderer::upload_water(bool spectral) {
-    if (!water_spectral_ || *water_spectral_ != spectral) {
-        water_spectral_ = spectral;
+    if (const auto asked = std::pair(spectral, scene_.optics); water_made_ != asked) {
+        water_made_ = asked;
         const scene::WaterTable table = scene::make_water_table(scene_.optics, spectral);
         water_ = gpu::Texture2D(GL_RGBA32F, table.texels, int(table.rows.size()), 1,
                                 gpu::Filter::nearest, "water");
@@ -445,6 +485,7 @@ void Renderer::move_waves(double time_s) {
     if (on_pass)
         on_pass("waves");
     waves_->move_to(time_s);
+    wave_time_s_ = time_s;
     if (caustics_) {
         sunlight_.on_pass = on_pass;
         sunlight_.update(*waves_);
@@ -601,6 +642,23 @@ void Renderer::draw_once() {
     }
 }
 
+void Renderer::draw_rows(int sample, int samples, int first_row, int rows) {
+    const int width = int(block_.counts.x), last = std::min(first_row + rows, int(block_.counts.y)),
+              most = hits_[0].height_px();
+    set_sample(sample, samples);
+    view_buffer_.write(&block_, sizeof block_);
+    if (sample == 0 && first_row == 0) {
+        if (on_pass)
+            on_pass("beams");
+        bind_walk(!under_water());
+        find_beams();
+    }
+    for (int top = first_row; top < last; top += most) {
+        block_.tile = {0, top, width, std::min(most, last - top)};
+        draw_tile();
+    }
+}
+
 Image Renderer::draw(const scene::View& view, const std::function<void(double)>& progress) {
     prepare(view);
     return draw_again(progress);
@@ -615,6 +673,10 @@ Image Renderer::draw_again(const std::function<void(double)>& progress) {
             progress(double(sample + 1) / samples_);
         }
     }
+    return read_back();
+}
+
+Image Renderer::read_back() const {
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     Image image;
     image.width_px = radiance_.width_px();

@@ -1,5 +1,6 @@
 #pragma once
 /// @file renderer.hpp  Scene + View -> Image, by compute shaders.
+#include "core/cone_map.hpp"
 #include "core/image.hpp"
 #include "gpu/context.hpp"
 #include "gpu/objects.hpp"
@@ -55,6 +56,33 @@ public:
     /// Uploads camera, light and settings, and makes the target images.
     void prepare(const scene::View& view);
 
+    /// The picture as it is on the GPU. Waits for it.
+    Image read_back() const;
+
+    /// Draws a part of one sample of a prepared picture, for who must not wait for all of it: the
+    /// samples in turn, each from its first row down, without gaps.
+    /// @param samples  that the picture will have; what is there after k of them is k / samples of
+    /// it
+    void draw_rows(int sample, int samples, int first_row, int rows);
+
+    /// Reads heights, lakes and optics of the scene again, which somebody has changed; sizes and
+    /// the photograph must be the same. Then prepare().
+    void scene_changed();
+
+    /// Cone maps made elsewhere, on a thread of their own say, in place of those that the next
+    /// prepare() would wait for.
+    /// @param ground   of the scene's ground alone
+    /// @param surface  of ground and water, the water raised by water_lift_m()
+    void give_cone_maps(const ConeMap& ground, const ConeMap& surface);
+    /// Would prepare() of a walk by cone maps have to make one?
+    bool needs_cone_maps() const { return bounds_.needs_cones(); }
+    /// How much the walk's water is raised for the waves of the last prepare() [m].
+    double water_lift_m() const { return lift_m_; }
+
+    /// The picture so far, on the GPU: radiance, and distances as find_first_hits() gives them.
+    const gpu::Texture2D& radiance() const { return radiance_; }
+    const gpu::Texture2D& distance() const { return distance_; }
+
     /// Shows the sea of the last prepare() at another time: all that an animation with a still
     /// camera needs between two pictures. Costs nothing where it is calm.
     void move_waves(double time_s);
@@ -106,7 +134,8 @@ private:
     void use_shade();
     std::string air_defines() const;
     std::string sunlight_defines() const;
-    void prepare_sunlight(const scene::View& view);
+    void upload_heights();
+    void prepare_sunlight(const scene::View& view, bool moved);
     void prepare_land_shadow(const scene::View& view);
     void use_walk(scene::Walk walk, double setting);
     std::string walk_file() const;
@@ -140,12 +169,13 @@ private:
     std::map<scene::Walk, WalkPasses> passes_;
     std::map<std::pair<scene::Walk, std::string>, WavyPasses> wavy_passes_;
     std::optional<WaveField> waves_;
+    std::optional<double> wave_time_s_; ///< that they show
     SunlightVolume sunlight_;
     std::optional<SunlightSettings> sunlight_settings_; ///< as laid out last for this sea
     bool caustics_ = false; ///< waves focus the sun's light in this picture
     int shaft_steps_ = 0;   ///< places along a view that shafts of light are looked up at; 0: none
     gpu::Texture2D water_;  ///< the water's table (scene/water_colour.hpp) ...
-    std::optional<bool> water_spectral_; ///< ... as it was made last
+    std::optional<std::pair<bool, scene::WaterOptics>> water_made_; ///< ... as it was made last
     gpu::Texture2D sunlit_;   ///< how waves focus the light of each part, with caustics only
     gpu::Texture2D surfaces_; ///< of the water met, for the passes after the first; with waves only
     double top_m_ = 0.0, water_top_m_ = 0.0; ///< highest node, above z = 0; highest level

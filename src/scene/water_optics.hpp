@@ -28,6 +28,7 @@ struct WaterBand {
     double pattern_per_m() const {
         return attenuation_per_m() + scattered_wide * (scattering_per_m - backscattering_per_m);
     }
+    friend bool operator==(const WaterBand&, const WaterBand&) = default;
 };
 
 struct WaterOptics {
@@ -46,6 +47,7 @@ struct WaterOptics {
 
     /// @throws tarn::Error  naming the field, its value and the legal range
     void validate() const;
+    friend bool operator==(const WaterOptics&, const WaterOptics&) = default;
 };
 
 } // namespace tarn::scene

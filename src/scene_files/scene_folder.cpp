@@ -162,6 +162,35 @@ std::optional<Grid<std::uint8_t>> load_safety_radii(const fs::path& folder,
     return radii;
 }
 
+namespace {
+std::string scene_text(const fs::path& folder) {
+    std::ifstream in(folder / "scene.json", std::ios::binary);
+    if (!in)
+        throw Error((folder / "scene.json").string() + ": cannot be read",
+                    "the scene folder may have been moved or deleted");
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+} // namespace
+
+void replace_cameras(const fs::path& folder, const std::vector<scene::NamedCamera>& cameras) {
+    const std::string text = with_cameras(scene_text(folder), cameras);
+    const fs::path part = folder / "scene.json.part";
+    {
+        std::ofstream out(part, std::ios::binary);
+        out << text;
+        out.close();
+        if (!out) {
+            std::error_code ignored;
+            fs::remove(part, ignored);
+            throw Error(part.string() + ": cannot be written",
+                        "check the folder's permissions and the free space");
+        }
+    }
+    fs::rename(part, folder / "scene.json");
+}
+
+std::string identity(const fs::path& folder) { return with_cameras(scene_text(folder), {}); }
+
 StagedFolder::StagedFolder(const fs::path& target) : target_(target.lexically_normal()) {
     if (!target_.has_filename())
         target_ = target_.parent_path(); // "scene/" means "scene"

@@ -22,6 +22,15 @@ Grid<float> load_heights(const std::filesystem::path& folder, const scene::Scene
 std::optional<Grid<std::uint8_t>> load_safety_radii(const std::filesystem::path& folder,
                                                     const scene::Scene& scene);
 
+/// Keeps other cameras in the folder; everything else in scene.json stays as it is.
+/// @throws tarn::Error  if the folder is gone, or cannot be written
+void replace_cameras(const std::filesystem::path& folder,
+                     const std::vector<scene::NamedCamera>& cameras);
+
+/// Text that differs between scenes, whatever cameras they keep.
+/// @throws tarn::Error  if scene.json cannot be read
+std::string identity(const std::filesystem::path& folder);
+
 /// A folder being written beside its final name. commit() puts it in place in one step; without it
 /// the destructor removes everything that was written, and an older scene of that name stays.
 class StagedFolder {

@@ -325,6 +325,17 @@ geo::Frame read_frame(const Field& f) {
     return frame;
 }
 
+json cameras_json(const std::vector<scene::NamedCamera>& list) {
+    json cameras = json::array();
+    for (const scene::NamedCamera& c : list)
+        cameras.push_back({{"name", c.name},
+                           {"position_m", vector_of(c.camera.position)},
+                           {"direction", vector_of(c.camera.forward)},
+                           {"up", vector_of(c.camera.up)},
+                           {"fov_deg", c.camera.fov_deg}});
+    return cameras;
+}
+
 json report_json(const ImportReport& r) {
     json inputs = json::array();
     for (const ImportInput& in : r.inputs)
@@ -447,15 +458,9 @@ std::string to_json(const scene::Scene& scene, const FileNames& files) {
     const auto heights = [](const Heightfield& h, const std::string& file) {
         return json{{"file", file}, {"offset_m", h.offset_m}, {"scale_m", h.scale_m}};
     };
-    json lakes = json::array(), cameras = json::array();
+    json lakes = json::array();
     for (const LakeRecord& lake : scene.lakes)
         lakes.push_back(lake_json(lake));
-    for (const scene::NamedCamera& c : scene.cameras)
-        cameras.push_back({{"name", c.name},
-                           {"position_m", vector_of(c.camera.position)},
-                           {"direction", vector_of(c.camera.forward)},
-                           {"up", vector_of(c.camera.up)},
-                           {"fov_deg", c.camera.fov_deg}});
     json out = {
         {"format", "tarn scene"},
         {"version", schema_version},
@@ -479,7 +484,7 @@ std::string to_json(const scene::Scene& scene, const FileNames& files) {
         {"waves", wave_settings_json(scene.waves)},
         {"look",
          {{"tree_line_m", scene.look.tree_line_m}, {"snow_line_m", scene.look.snow_line_m}}},
-        {"cameras", cameras}};
+        {"cameras", cameras_json(scene.cameras)}};
     if (!files.safety_ground.empty())
         out["safety_ground"] = {{"file", files.safety_ground}, {"ground_sum", files.safety_sum}};
     if (scene.ortho)
@@ -491,6 +496,14 @@ std::string to_json(const scene::Scene& scene, const FileNames& files) {
                         {"spacing_m", scene.ortho->spacing_m}};
     out["import"] = report_json(scene.report);
     return out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+std::string with_cameras(const std::string& text, const std::vector<scene::NamedCamera>& cameras) {
+    json root = json::parse(text, nullptr, false);
+    if (!root.is_object())
+        throw Error("scene.json is damaged", "import the scene again");
+    root["cameras"] = cameras_json(cameras);
+    return root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
 scene::Scene from_json(const std::string& source, FileNames& files) {

@@ -63,6 +63,10 @@ struct WavesReport {
 };
 std::string waves_json(const WavesReport& report);
 
+/// The text of a scene.json with other cameras; the rest stays as it is.
+/// @throws tarn::Error  if it is no JSON object
+std::string with_cameras(const std::string& text, const std::vector<scene::NamedCamera>& cameras);
+
 /// Fills everything but the codes of `ground`, `water` and `ortho` (whose sizes are set).
 /// @throws tarn::Error  naming the field: missing, of the wrong type, out of range, unknown
 /// version,

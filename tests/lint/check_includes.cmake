@@ -32,7 +32,7 @@ endforeach()
 
 # One door per library.
 set(doors "gdal|ogr_|cpl_=dem" "GeographicLib/|libnova/=geo" "OpenImageIO/=image" "GL/|EGL/=gpu"
-          "nlohmann/=scene_files,app" "tbb/=reference" "CLI/|spdlog/=app")
+          "nlohmann/=scene_files,app" "tbb/=reference" "GLFW/|imgui=view" "CLI/|spdlog/=app")
 foreach(door IN LISTS doors)
     string(REGEX MATCH "^(.*)=(.*)$" _ "${door}")
     set(pattern ${CMAKE_MATCH_1})

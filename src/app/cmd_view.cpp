@@ -1,0 +1,242 @@
+// `tarn view` — the window.
+#include "app/command.hpp"
+#include "app/console.hpp"
+#include "app/picture.hpp"
+#include "app/view_options.hpp"
+#include "core/error.hpp"
+#include "core/text.hpp"
+#include "dem/import.hpp"
+#include "dem/refill.hpp"
+#include "dem/vectors.hpp"
+#include "geo/frame.hpp"
+#include "scene_files/scene_folder.hpp"
+#include "view/window.hpp"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <spdlog/spdlog.h>
+
+namespace tarn::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Words {
+    ViewWords view;
+    PictureWords picture;
+    std::string scene, pictures = ".";
+    std::vector<std::string> layers;
+    bool egl = false;
+};
+
+/// dem::Refill as the window knows it.
+class RefilledLevels : public view::LevelControl {
+public:
+    RefilledLevels(dem::Refill refill, double level_m)
+        : refill_(std::move(refill)), level_m_(level_m) {}
+    double lowest_m() const override { return refill_.lowest_m(); }
+    double highest_m() const override { return refill_.highest_m(); }
+    double usual_m() const override { return refill_.lake().level_m; }
+    std::optional<double> spill_m() const override { return refill_.spill_m(); }
+    view::Figures figures(double level_m) const override { return of(refill_.figures(level_m)); }
+    std::vector<view::Figures> curve(int count, double up_to_m) const override {
+        std::vector<view::Figures> out;
+        for (const dem::WaterFigures& f : refill_.curve(count, up_to_m))
+            out.push_back(of(f));
+        return out;
+    }
+    void fill(double level_m, scene::Scene& scene, bool shore) override {
+        refill_.fill(level_m, scene.ground, scene.water, scene.lakes, shore);
+    }
+
+private:
+    static view::Figures of(const dem::WaterFigures& f) {
+        return {f.level_m, f.area_m2, f.volume_m3, f.max_depth_m, f.open_at_edge};
+    }
+    dem::Refill refill_;
+    double level_m_;
+};
+
+/// A command line of options, read as `tarn render` reads it.
+struct Parsed {
+    ViewWords view;
+    PictureWords picture;
+    CLI::App app;
+    explicit Parsed(const view::Options& options) {
+        add_view_options(app, view);
+        add_picture_options(app, picture);
+        try {
+            for (const auto& [name, value] : options) {
+                CLI::Option* option = app.get_option_no_throw("--" + name);
+                if (!option)
+                    throw Error("no option is called '" + name + "'");
+                option->add_result(value);
+                option->run_callback();
+            }
+        } catch (const CLI::Error& error) {
+            throw Error(error.what());
+        }
+    }
+};
+
+scene_files::OptionList list_of(const view::Options& options) {
+    return {options.begin(), options.end()};
+}
+
+/// A name that is not taken: tarn_001.png, tarn_002.png, ...
+std::string next_picture(const fs::path& folder) {
+    for (int i = 1; i < 100'000; ++i) {
+        std::string number = std::to_string(i);
+        number.insert(0, number.size() < 3 ? 3 - number.size() : 0, '0');
+        const fs::path path = folder / ("tarn_" + number + ".png");
+        if (!fs::exists(path))
+            return path.string();
+    }
+    throw Error(folder.string() + " is full of pictures", "choose another folder with --pictures");
+}
+
+view::Services services_for(const std::string& folder, const scene::Scene& as_imported,
+                            const Words& words) {
+    view::Services out;
+    out.make_view = [](const view::Options& options, scene::Scene& scene) {
+        Parsed parsed(options);
+        return make_view(parsed.view, scene);
+    };
+    out.command = [folder](const view::Options& options) {
+        return command_of("render", folder, list_of(options)) + " -o picture.png";
+    };
+    out.open_levels = [folder, lake = words.view.lake,
+                       scene = std::make_shared<const scene::Scene>(as_imported)] {
+        return std::unique_ptr<view::LevelControl>(std::make_unique<RefilledLevels>(
+            make_refill(folder, *scene, lake, Progress{}), scene->lakes.front().level_m));
+    };
+    out.save_cameras = [folder](const std::vector<scene::NamedCamera>& cameras) {
+        scene_files::replace_cameras(folder, cameras);
+    };
+    out.save_picture = [folder, pictures = words.pictures](
+                           const Image& picture, const scene::Scene& scene, const scene::View& view,
+                           const view::Options& options) {
+        Parsed parsed(options);
+        parsed.picture.sidecar = true;
+        const std::string path = next_picture(pictures);
+        write_picture(path, parsed.picture, picture, scene, view,
+                      {.scene = folder,
+                       .options = list_of(options),
+                       .command = command_of("render", folder, list_of(options)) + " -o " + path,
+                       .device = "tarn view",
+                       .time = describe_time(parsed.view, scene),
+                       .exposure = {},
+                       .more = {}});
+        return path;
+    };
+    out.read_layer = [frame = as_imported.frame](const std::string& path) {
+        view::Layer layer;
+        layer.name = fs::path(path).filename().string();
+        for (const dem::VectorFeature& f : dem::read_vectors(path, frame)) {
+            for (const auto& line : f.lines) {
+                layer.lines.emplace_back();
+                for (const ScenePoint& p : line)
+                    layer.lines.back().push_back({p.x_m, p.y_m});
+            }
+            for (const ScenePoint& p : f.points)
+                layer.points.push_back({{p.x_m, p.y_m}, f.label});
+        }
+        return layer;
+    };
+    return out;
+}
+
+/// A DEM is imported beside, to a folder that goes with the program.
+class TemporaryScene {
+public:
+    explicit TemporaryScene(const std::string& dem) {
+        std::string name = (fs::temp_directory_path() / "tarn-view-XXXXXX").string();
+        if (!::mkdtemp(name.data()))
+            throw Error(fs::temp_directory_path().string() + ": no folder can be made there",
+                        "set TMPDIR to a place with some space");
+        folder_ = name;
+        try {
+            import_for_viewing(dem, (folder_ / "scene").string());
+        } catch (...) {
+            std::error_code ignored;
+            fs::remove_all(folder_, ignored);
+            throw;
+        }
+    }
+    ~TemporaryScene() {
+        std::error_code ignored;
+        fs::remove_all(folder_, ignored);
+    }
+    TemporaryScene(const TemporaryScene&) = delete;
+    TemporaryScene& operator=(const TemporaryScene&) = delete;
+    std::string path() const { return (folder_ / "scene").string(); }
+
+private:
+    fs::path folder_;
+};
+
+int run_view(const Words& words, view::Options options) {
+    std::optional<std::string> next = words.scene;
+    bool first = true;
+    while (next) {
+        std::optional<TemporaryScene> temporary;
+        std::string folder = *next;
+        if (!fs::is_directory(folder)) {
+            temporary.emplace(folder);
+            folder = temporary->path();
+        }
+        scene::Scene scene = scene_files::load(folder);
+        const scene::Scene as_imported = scene;
+        if (const auto level = words.view.level_m; level && first) {
+            dem::Refill refill = make_refill(folder, scene, words.view.lake, console_progress());
+            refill.fill(*level, scene.ground, scene.water, scene.lakes, true);
+            end_progress();
+        }
+        int width = 1280, height = 720;
+        if (const auto size = options.find("size"); size != options.end())
+            std::sscanf(size->second.c_str(), "%dx%d", &width, &height);
+        const std::string name = scene.lakes.front().name;
+        next = view::run_window(
+            scene, services_for(folder, as_imported, words), options,
+            {.width_px = width,
+             .height_px = height,
+             .title = (name.empty() ? fs::path(*next).filename().string() : name) + " - tarn",
+             .egl = words.egl});
+        options.clear();
+        first = false;
+    }
+    return 0;
+}
+
+} // namespace
+
+void add_view(CLI::App& app, Run& run) {
+    auto words = std::make_shared<Words>();
+    CLI::App* c = app.add_subcommand("view", "the window: fly, dive, move the level, measure");
+    c->add_option("SCENE", words->scene,
+                  "scene folder; a DEM file is imported for the time being, with its level found")
+        ->required();
+    c->add_option("--pictures", words->pictures, "folder that F12 writes to")
+        ->capture_default_str();
+    c->add_flag("--egl", words->egl, "an EGL context instead of the platform's own");
+    add_view_options(*c, words->view);
+    add_picture_options(*c, words->picture);
+    c->footer("F1 in the window shows keys and mouse.\n"
+              "Examples:\n  tarn view rotoma\n  tarn view rotoma --wind 5 --camera dive\n"
+              "  tarn view dem.tif");
+    c->callback([words, c, &run] {
+        run = [words, c] {
+            apply_settings_file(*c, words->view);
+            view::Options options;
+            for (const auto& [name, value] : given_options(*c))
+                if (name != "pictures" && name != "egl")
+                    options[name] = value;
+            return run_view(*words, options);
+        };
+    });
+}
+
+} // namespace tarn::app

@@ -1,0 +1,24 @@
+#pragma once
+/// @file vectors.hpp  Lines, outlines and points of any vector file, in scene metres: for maps.
+#include "core/geo.hpp"
+#include "geo/frame_data.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tarn::dem {
+
+struct VectorFeature {
+    std::vector<std::vector<ScenePoint>> lines; ///< outlines come back to their start
+    std::vector<ScenePoint> points;
+    std::string label; ///< of the field called name, label, title, ...; may be empty
+};
+
+/// Reads all layers (GeoJSON, GeoPackage, GPX, shapefile, ...). Places that cannot be transformed
+/// are left out.
+/// @throws tarn::Error  naming the file: missing, not readable, empty, or without a CRS and not in
+///                      longitude and latitude
+std::vector<VectorFeature> read_vectors(const std::filesystem::path& path, const geo::Frame& frame);
+
+} // namespace tarn::dem

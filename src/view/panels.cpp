@@ -1,0 +1,580 @@
+#include "view/panels.hpp"
+
+#include "core/text.hpp"
+#include "scene/water_types.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <imgui.h>
+
+namespace tarn::view {
+
+namespace {
+
+std::string area_words(double m2) {
+    return m2 >= 1e5 ? fixed(m2 / 1e6, 3) + " km2" : fixed(m2, 0) + " m2";
+}
+
+std::string volume_words(double m3) {
+    return m3 >= 1e9 ? fixed(m3 / 1e9, 4) + " km3" : fixed(m3 / 1e6, 3) + " million m3";
+}
+
+/// A slider of an option that has a number. @return whether it was moved
+bool number_slider(Session& session, const char* label, const char* option, double usual,
+                   float least, float most, const char* format, bool logarithmic = false) {
+    auto value = static_cast<float>(session.number(option, usual));
+    if (!ImGui::SliderFloat(label, &value, least, most, format,
+                            logarithmic ? ImGuiSliderFlags_Logarithmic : 0))
+        return false;
+    return session.set(option, text(value));
+}
+
+/// A box that is ticked unless the option --no-... is given.
+bool effect_box(Session& session, const char* label, const char* option) {
+    bool on = !session.flag(option);
+    if (!ImGui::Checkbox(label, &on))
+        return false;
+    return session.set(option, on ? "" : "true");
+}
+
+bool choice(Session& session, const char* label, const char* option,
+            const std::vector<std::string>& names, const std::string& usual) {
+    const std::string now = session.option(option, usual);
+    bool changed = false;
+    if (ImGui::BeginCombo(label, now.c_str())) {
+        for (const std::string& name : names)
+            if (ImGui::Selectable(name.c_str(), name == now))
+                changed |= session.set(option, name == usual ? "" : name);
+        ImGui::EndCombo();
+    }
+    return changed;
+}
+
+void plot_curve(const Session& session, const char* label, const char* unit, bool volume) {
+    const auto& curve = session.curve();
+    if (curve.empty() || (volume && !curve.front().volume_m3))
+        return;
+    std::vector<float> values;
+    for (const Figures& f : curve)
+        values.push_back(float(volume ? *f.volume_m3 / 1e6 : f.area_m2 / 1e6));
+    const auto& now = *session.figures();
+    const double value = volume ? *now.volume_m3 / 1e6 : now.area_m2 / 1e6;
+    const float most = *std::max_element(values.begin(), values.end());
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const ImVec2 size(ImGui::GetContentRegionAvail().x, 64.0f * ImGui::GetFontSize() / 15.0f);
+    const std::string over = std::string(label) + " " + fixed(value, 3) + " " + unit;
+    ImGui::PlotLines(volume ? "##volume" : "##area", values.data(), int(values.size()), 0,
+                     over.c_str(), 0.0f, most, size);
+    // Where the level is now, and where it spills.
+    const double low = curve.front().level_m, high = curve.back().level_m;
+    const auto line = [&](double level, ImU32 colour) {
+        if (level < low || level > high)
+            return;
+        const float x = at.x + size.x * float((level - low) / std::max(high - low, 1e-9));
+        ImGui::GetWindowDrawList()->AddLine({x, at.y}, {x, at.y + size.y}, colour, 1.5f);
+    };
+    if (session.levels() && session.levels()->spill_m())
+        line(*session.levels()->spill_m(), IM_COL32(230, 90, 70, 220));
+    line(session.level_m(), IM_COL32(255, 220, 120, 255));
+}
+
+void water_panel(Session& session, PanelState& state) {
+    if (!session.levels()) {
+        ImGui::TextDisabled("following the water, a moment ...");
+        ImGui::Text("level %.2f m", session.level_m());
+        return;
+    }
+    LevelControl& levels = *session.levels();
+    const double top =
+        session.curve().empty() ? levels.highest_m() : session.curve().back().level_m;
+    auto level = static_cast<float>(session.level_m());
+    ImGui::SetNextItemWidth(-1.0f);
+    const bool moved = ImGui::SliderFloat("##level", &level, float(levels.lowest_m()), float(top),
+                                          "level %.2f m", ImGuiSliderFlags_NoRoundToFormat);
+    const bool done = ImGui::IsItemDeactivatedAfterEdit();
+    if (moved || done)
+        session.set_level(std::round(double(level) * 100.0) / 100.0, done);
+    state.level_dragged = moved && !done;
+    const auto step = [&](const char* label, double by) {
+        if (ImGui::Button(label))
+            session.set_level(std::round((session.level_m() + by) * 100.0) / 100.0, true);
+        ImGui::SameLine();
+    };
+    step("-1 m", -1.0);
+    step("-.1", -0.1);
+    step("+.1", 0.1);
+    step("+1 m", 1.0);
+    if (ImGui::Button("as imported"))
+        session.set_level(levels.usual_m(), true);
+    if (session.figures()) {
+        const Figures& f = *session.figures();
+        ImGui::Text("area %s", area_words(f.area_m2).c_str());
+        if (f.volume_m3)
+            ImGui::Text("volume %s, depth %.2f m", volume_words(*f.volume_m3).c_str(),
+                        f.max_depth_m.value_or(0.0));
+        else
+            ImGui::TextDisabled("bed unknown: no volume, no depth");
+        if (levels.spill_m() && f.open_at_edge)
+            ImGui::TextColored({1.0f, 0.5f, 0.4f, 1.0f},
+                               "spills: above %.2f m water leaves the data", *levels.spill_m());
+        else if (levels.spill_m())
+            ImGui::TextDisabled("may rise to %.2f m", *levels.spill_m());
+        plot_curve(session, "area", "km2", false);
+        plot_curve(session, "volume", "million m3", true);
+    }
+    ImGui::TextDisabled("refilled in %.0f ms", session.last_fill_ms());
+}
+
+bool sun_panel(Session& session) {
+    bool changed = false;
+    const bool by_hand = !session.option("sun").empty() || !session.option("environment").empty();
+    if (by_hand) {
+        ImGui::TextWrapped("The sun is given by --sun or --environment.");
+        if (ImGui::Button("by date and time instead"))
+            changed |=
+                session.set(Options{{"sun", ""}, {"environment", ""}, {"environment-turn", ""}});
+    } else if (const auto time = parse_solar(session.option("time"));
+               time || session.option("time").empty()) {
+        SolarTime now = time.value_or(SolarTime{});
+        auto hour = static_cast<float>(now.hour);
+        const std::string words = format_solar(now);
+        if (ImGui::SliderFloat("time", &hour, 0.0f, 23.98f, words.substr(11).c_str())) {
+            now.hour = hour;
+            changed |= session.set("time", format_solar(now));
+        }
+        if (ImGui::SliderInt("date", &now.day, 1, 365, words.substr(0, 10).c_str()))
+            changed |= session.set("time", format_solar(now));
+        ImGui::TextDisabled("mean solar time at the lake");
+        ImGui::Checkbox("play", &session.play_sun);
+    } else {
+        ImGui::Text("%s", session.option("time").c_str());
+        if (ImGui::Button("in solar time instead"))
+            changed |= session.set("time", format_solar(SolarTime{}));
+    }
+    const glm::dvec3& s = session.view.lighting.sun_direction;
+    ImGui::Text("sun %.1f deg high", std::asin(std::clamp(s.z, -1.0, 1.0)) * 57.29578);
+    bool haze = !session.option("visibility").empty();
+    if (ImGui::Checkbox("haze", &haze))
+        changed |= session.set("visibility", haze ? "30" : "");
+    if (haze)
+        changed |=
+            number_slider(session, "visibility", "visibility", 30.0, 0.5f, 200.0f, "%.1f km", true);
+    return changed;
+}
+
+bool wind_panel(Session& session) {
+    bool changed = false;
+    auto wind =
+        static_cast<float>(session.view.waves.calm() ? 0.0 : session.view.waves.wind_m_per_s);
+    ImGui::SliderFloat("wind", &wind, 0.0f, 20.0f, "%.1f m/s");
+    if (ImGui::IsItemDeactivatedAfterEdit()) // a new sea takes a moment
+        changed |=
+            wind < 0.3f
+                ? session.set(Options{{"wind", ""}, {"waves", "calm"}})
+                : session.set(Options{{"wind", text(std::round(wind * 10) / 10)}, {"waves", ""}});
+    auto from = static_cast<float>(session.number("wind-from", 270.0));
+    ImGui::SliderFloat("from", &from, 0.0f, 360.0f, "%.0f deg");
+    if (ImGui::IsItemDeactivatedAfterEdit())
+        changed |= session.set("wind-from", fixed(from, 0));
+    ImGui::Checkbox("moving water", &session.play_waves);
+    if (!session.view.waves.calm() && !session.play_waves)
+        changed |= number_slider(session, "moment", "wave-time", 0.0, 0.0f, 60.0f, "%.1f s");
+    return changed;
+}
+
+bool clarity_panel(Session& session) {
+    bool changed = false;
+    const bool by_type = !session.option("water").empty();
+    auto secchi = static_cast<float>(session.number("secchi", 14.0));
+    if (ImGui::SliderFloat("Secchi depth", &secchi, 0.3f, 45.0f, by_type ? "-" : "%.1f m",
+                           ImGuiSliderFlags_Logarithmic))
+        changed |= session.set(Options{{"secchi", fixed(secchi, 2)},
+                                       {"water", ""},
+                                       {"water-table", ""},
+                                       {"chlorophyll", ""},
+                                       {"cdom", ""},
+                                       {"turbidity", ""}});
+    const std::string now = session.option(
+        "water", session.option("secchi").empty() ? "as the scene says" : "by Secchi depth");
+    if (ImGui::BeginCombo("type", now.c_str())) {
+        if (ImGui::Selectable("as the scene says"))
+            changed |= session.set(Options{{"secchi", ""}, {"water", ""}});
+        for (const std::string& name : scene::water_type_names())
+            if (ImGui::Selectable(name.c_str(), name == now))
+                changed |= session.set(Options{{"secchi", ""}, {"water", name}});
+        ImGui::EndCombo();
+    }
+    ImGui::TextDisabled("%s", session.scene.optics.name.c_str());
+    return changed;
+}
+
+bool effects_panel(Session& session, PanelState& state, Requests& asked) {
+    bool changed = false;
+    changed |= effect_box(session, "reflection", "no-reflection");
+    ImGui::SameLine();
+    changed |= effect_box(session, "refraction", "no-refraction");
+    ImGui::SameLine();
+    changed |= effect_box(session, "shadows", "no-shadows");
+    std::vector<std::string> names;
+    for (const scene::CausticsMethod& m : scene::caustics_methods())
+        names.emplace_back(m.name);
+    changed |= choice(session, "caustics", "caustics", names, "splat");
+    auto steps = int(session.number("shaft-steps", 2));
+    if (ImGui::SliderInt("shafts of light", &steps, 0, 16, steps == 0 ? "off" : "%d"))
+        changed |= session.set("shaft-steps", steps == 2 ? "" : text(steps));
+    names.clear();
+    for (const scene::WalkMethod& m : scene::walk_methods())
+        names.emplace_back(m.name);
+    changed |= choice(session, "intersection", "intersection", names, "cone-map");
+    changed |= choice(session, "colour", "colour", {"spectral", "rgb"}, "spectral");
+    auto samples = int(session.number("samples", 4));
+    if (ImGui::SliderInt("samples", &samples, 1, 64))
+        changed |= session.set("samples", text(samples));
+    if (ImGui::Button("time each pass"))
+        asked.time_passes = true;
+    if (!state.pass_ms.empty()) {
+        double sum = 0.0;
+        for (const auto& [name, ms] : state.pass_ms) {
+            ImGui::Text("%8.2f ms  %s", ms, name.c_str());
+            sum += ms;
+        }
+        ImGui::Text("%8.2f ms  one sample", sum);
+    }
+    return changed;
+}
+
+bool exposure_panel(Session& session, const Screen& screen) {
+    bool changed = false;
+    bool automatic = session.option("exposure").empty();
+    if (ImGui::Checkbox("automatic", &automatic))
+        changed |= session.set("exposure", automatic ? "" : text(float(screen.exposure())));
+    if (!automatic)
+        changed |= number_slider(session, "exposure", "exposure", screen.exposure(), 0.05f, 500.0f,
+                                 "%.2f", true);
+    else
+        ImGui::Text("factor %.2f", screen.exposure());
+    return changed;
+}
+
+void camera_panel(Session& session, PanelState& state) {
+    for (const scene::NamedCamera& c : session.scene.cameras) {
+        if (ImGui::Button(c.name.c_str()))
+            session.go_to(c.name);
+        if (ImGui::BeginPopupContextItem()) {
+            if (ImGui::MenuItem("remove")) {
+                session.remove_bookmark(c.name);
+                ImGui::EndPopup();
+                break; // the list is another one now
+            }
+            ImGui::EndPopup();
+        }
+        const float next = ImGui::GetItemRectMax().x + 90.0f;
+        if (next < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x)
+            ImGui::SameLine();
+    }
+    ImGui::NewLine();
+    ImGui::SetNextItemWidth(-70.0f * ImGui::GetFontSize() / 15.0f);
+    ImGui::InputTextWithHint("##name", "name", state.bookmark, sizeof state.bookmark);
+    ImGui::SameLine();
+    if (ImGui::Button("keep")) {
+        session.add_bookmark(state.bookmark);
+        state.bookmark[0] = '\0';
+    }
+    Pose pose = session.flight.pose();
+    auto fov = static_cast<float>(pose.fov_deg);
+    if (ImGui::SliderFloat("field of view", &fov, 10.0f, 100.0f, "%.0f deg")) {
+        pose.fov_deg = fov;
+        session.flight.jump(pose);
+    }
+    if (ImGui::Button("undo"))
+        session.flight.undo();
+    ImGui::SameLine();
+    if (ImGui::Button("redo"))
+        session.flight.redo();
+}
+
+void measure_panel(Session& session, PanelState& state) {
+    int kind = int(session.measuring);
+    ImGui::RadioButton("off", &kind, 0);
+    ImGui::SameLine();
+    ImGui::RadioButton("line", &kind, 1);
+    ImGui::SameLine();
+    ImGui::RadioButton("polygon", &kind, 2);
+    if (kind != int(session.measuring)) {
+        session.measuring = Session::Measuring(kind);
+        session.measured.clear();
+    }
+    if (session.measuring != Session::Measuring::off) {
+        ImGui::TextDisabled("click to set points, Backspace takes one back");
+        const double length = length_m(session.scene, session.measured);
+        ImGui::Text("length %s", length >= 1000 ? (fixed(length / 1000, 3) + " km").c_str()
+                                                : (fixed(length, 2) + " m").c_str());
+        if (session.measuring == Session::Measuring::polygon)
+            ImGui::Text("area %s", area_words(area_m2(session.scene, session.measured)).c_str());
+    }
+    ImGui::SetNextItemWidth(-70.0f * ImGui::GetFontSize() / 15.0f);
+    ImGui::InputTextWithHint("##layer", "GeoJSON, GeoPackage, GPX, ...", state.layer,
+                             sizeof state.layer);
+    ImGui::SameLine();
+    if (ImGui::Button("add") && state.layer[0] != '\0')
+        session.add_layer(state.layer);
+    for (std::size_t i = 0; i < session.layers.size(); ++i) {
+        ImGui::BulletText("%s", session.layers[i].name.c_str());
+        ImGui::SameLine();
+        if (ImGui::SmallButton(text("remove##", i).c_str())) {
+            session.layers.erase(session.layers.begin() + std::ptrdiff_t(i));
+            break;
+        }
+    }
+}
+
+void picture_panel(Session& session, PanelState& state, Requests& asked) {
+    int size[2] = {state.picture_width_px, state.picture_height_px};
+    if (ImGui::InputInt2("size", size)) {
+        state.picture_width_px = std::clamp(size[0], 1, 16384);
+        state.picture_height_px = std::clamp(size[1], 1, 16384);
+    }
+    ImGui::SliderInt("rays a pixel", &state.picture_samples, 1, 256);
+    bool caption = session.flag("caption");
+    if (ImGui::Checkbox("caption", &caption))
+        session.set("caption", caption ? "true" : "");
+    ImGui::SameLine();
+    if (ImGui::Button("save (F12)"))
+        asked.save_picture = true;
+    if (ImGui::Button("copy as command")) {
+        ImGui::SetClipboardText(session.services.command(session.all_options()).c_str());
+        session.say("the command that makes this picture is on the clipboard");
+    }
+}
+
+/// Where a place of the scene is on the screen, if it is before the camera.
+std::optional<ImVec2> on_screen(const scene::Camera& c, const glm::dvec3& place, ImVec2 size) {
+    const glm::dvec3 to = place - c.position;
+    const double depth = glm::dot(to, c.forward);
+    if (depth <= 1e-3)
+        return std::nullopt;
+    const double half = std::tan(0.5 * c.fov_deg * 0.017453292519943295);
+    const double x = glm::dot(to, c.right) / (depth * half * size.x / size.y),
+                 y = glm::dot(to, c.up) / (depth * half);
+    return ImVec2(size.x * float(0.5 + 0.5 * x), size.y * float(0.5 - 0.5 * y));
+}
+
+void draw_north(const Session& session, ImVec2 middle, float radius) {
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    // Grid north and true north differ by some minutes of arc; here that is less than a pixel.
+    const double a = -session.flight.pose().heading_deg * 0.017453292519943295;
+    const ImVec2 tip(middle.x + radius * float(std::sin(a)),
+                     middle.y - radius * float(std::cos(a)));
+    const ImVec2 left(middle.x - 0.35f * radius * float(std::cos(a)),
+                      middle.y - 0.35f * radius * float(std::sin(a)));
+    const ImVec2 right(2 * middle.x - left.x, 2 * middle.y - left.y);
+    const ImVec2 tail(2 * middle.x - tip.x, 2 * middle.y - tip.y);
+    list.AddCircleFilled(middle, radius * 1.15f, IM_COL32(0, 0, 0, 90), 32);
+    list.AddTriangleFilled(tip, left, right, IM_COL32(225, 80, 70, 255));
+    list.AddTriangleFilled(tail, left, right, IM_COL32(235, 235, 235, 255));
+    list.AddText({middle.x - 4, middle.y - radius * 1.15f - ImGui::GetFontSize()},
+                 IM_COL32(255, 255, 255, 255), "N");
+}
+
+void draw_scale(const PanelState& state, const Session& session, ImVec2 size, float scale) {
+    // At what the pointer is on, else there is none.
+    if (!state.pointer)
+        return;
+    const double metre_px =
+        double(size.y) / (2.0 * std::tan(0.5 * session.flight.pose().fov_deg * 0.0174532925) *
+                          state.pointer->distance_m);
+    const double metres = 160.0 * double(scale) / metre_px;
+    const double decade = std::pow(10.0, std::floor(std::log10(metres)));
+    const double length = decade * (metres / decade >= 5 ? 5 : metres / decade >= 2 ? 2 : 1);
+    const auto px = float(length * metre_px);
+    const ImVec2 end(size.x - 20 * scale, size.y - 44 * scale);
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    list.AddRectFilled({end.x - px - 1, end.y - 5}, {end.x + 1, end.y + 1}, IM_COL32(0, 0, 0, 160));
+    list.AddRectFilled({end.x - px, end.y - 4}, end, IM_COL32(255, 255, 255, 255));
+    const std::string label = length >= 1000 ? fixed(length / 1000, 0) + " km"
+                              : length >= 1  ? fixed(length, 0) + " m"
+                                             : fixed(length * 100, 0) + " cm";
+    const std::string words = label + " at the pointer";
+    list.AddText({end.x - ImGui::CalcTextSize(words.c_str()).x, end.y - 8 - ImGui::GetFontSize()},
+                 IM_COL32(255, 255, 255, 255), words.c_str());
+}
+
+void draw_gauge(const Session& session, ImVec2 size, float scale) {
+    const glm::dvec3& p = session.flight.pose().position;
+    const auto level = session.scene.water_level_m(p.x, p.y);
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    std::string words;
+    if (level && p.z < *level)
+        words = fixed(*level - p.z, 2) + " m deep, bed " +
+                fixed(p.z - session.scene.ground.elevation_m(p.x, p.y), 1) + " m below";
+    else
+        words = fixed(p.z, 1) + " m, " +
+                fixed(p.z - level.value_or(session.scene.ground.elevation_m(p.x, p.y)), 1) +
+                (level ? " m above the water" : " m above the ground");
+    const ImVec2 extent = ImGui::CalcTextSize(words.c_str());
+    const ImVec2 at(size.x - extent.x - 20 * scale, 14 * scale);
+    list.AddRectFilled({at.x - 6, at.y - 3}, {at.x + extent.x + 6, at.y + extent.y + 3},
+                       IM_COL32(0, 0, 0, 110), 4.0f);
+    list.AddText(at, IM_COL32(255, 255, 255, 255), words.c_str());
+    if (level && p.z < *level) { // a bar from the surface down to the bed, with where one is
+        const double bed = session.scene.ground.elevation_m(p.x, p.y);
+        const double share = (*level - p.z) / std::max(*level - bed, 0.01);
+        const float x = size.x - 28 * scale, top = 120 * scale, bottom = size.y - 120 * scale;
+        list.AddRectFilled({x - 3, top}, {x + 3, bottom}, IM_COL32(20, 60, 90, 160));
+        const float y = top + (bottom - top) * float(std::clamp(share, 0.0, 1.0));
+        list.AddTriangleFilled({x - 12, y - 6}, {x - 12, y + 6}, {x - 2, y},
+                               IM_COL32(255, 230, 140, 255));
+        list.AddText({x - 24, top - ImGui::GetFontSize() - 2}, IM_COL32(255, 255, 255, 255), "0 m");
+        const std::string deepest = fixed(*level - bed, 1) + " m";
+        list.AddText({x - 24, bottom + 2}, IM_COL32(255, 255, 255, 255), deepest.c_str());
+    }
+}
+
+void draw_measured(Session& session, ImVec2 size) {
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    const scene::Camera camera = camera_of(session.flight.pose());
+    std::vector<glm::dvec3> places = session.measured;
+    if (session.measuring == Session::Measuring::polygon && places.size() > 2)
+        places.push_back(places.front());
+    std::optional<ImVec2> last;
+    for (const glm::dvec3& place : places) {
+        const auto here = on_screen(camera, place, size);
+        if (here) {
+            list.AddCircleFilled(*here, 4.0f, IM_COL32(255, 210, 90, 255));
+            if (last)
+                list.AddLine(*last, *here, IM_COL32(255, 210, 90, 230), 2.0f);
+        }
+        last = here;
+    }
+}
+
+void draw_messages(Session& session, ImVec2 size, float scale) {
+    float y = size.y - 70 * scale;
+    for (auto m = session.messages.rbegin(); m != session.messages.rend(); ++m) {
+        const float wrap = std::min(size.x * 0.6f, 700 * scale);
+        const ImVec2 extent = ImGui::CalcTextSize(m->text.c_str(), nullptr, false, wrap);
+        y -= extent.y + 14;
+        const ImVec2 at((size.x - extent.x) / 2, y);
+        ImDrawList& list = *ImGui::GetForegroundDrawList();
+        list.AddRectFilled({at.x - 10, at.y - 5}, {at.x + extent.x + 10, at.y + extent.y + 5},
+                           m->error ? IM_COL32(120, 30, 25, 225) : IM_COL32(20, 30, 40, 200), 6.0f);
+        list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at, IM_COL32(255, 255, 255, 255),
+                     m->text.c_str(), nullptr, wrap);
+    }
+}
+
+void draw_help(bool& open) {
+    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing,
+                            {0.5f, 0.5f});
+    if (ImGui::Begin("Keys and mouse", &open,
+                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse |
+                         ImGuiWindowFlags_NoSavedSettings)) {
+        static const char* keys[][2] = {{"W A S D", "fly forward, left, back, right"},
+                                        {"E / Q, Page up / down", "up, down"},
+                                        {"Shift / Ctrl", "four times as fast / a quarter"},
+                                        {"left button", "go round the point under the pointer"},
+                                        {"right button", "look around"},
+                                        {"wheel", "nearer, farther"},
+                                        {"double click", "fly to a point"},
+                                        {"1 ... 9", "cameras of the scene"},
+                                        {"Ctrl Z / Ctrl Y", "take back a movement / do it again"},
+                                        {"[ / ]", "water down, up by .1 m (Shift: 1 m)"},
+                                        {"Space", "water moves or stands still"},
+                                        {"Tab", "panel on, off"},
+                                        {"F1", "these keys"},
+                                        {"F12", "save a picture"},
+                                        {"Ctrl C", "copy as command"},
+                                        {"Esc", "leave off measuring"}};
+        if (ImGui::BeginTable("keys", 2)) {
+            for (const auto& row : keys) {
+                ImGui::TableNextRow();
+                ImGui::TableNextColumn();
+                ImGui::TextUnformatted(row[0]);
+                ImGui::TableNextColumn();
+                ImGui::TextUnformatted(row[1]);
+            }
+            ImGui::EndTable();
+        }
+    }
+    ImGui::End();
+}
+
+} // namespace
+
+Requests draw_panels(Session& session, const Screen& screen, PanelState& state, float scale) {
+    Requests asked;
+    state.level_dragged = false;
+    if (!state.shown)
+        return asked;
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({8 * scale, 8 * scale}, ImGuiCond_Once);
+    ImGui::SetNextWindowSize({330 * scale, size.y - 50 * scale}, ImGuiCond_Once);
+    ImGui::SetNextWindowSizeConstraints({200 * scale, 100 * scale},
+                                        {size.x, std::max(110 * scale, size.y - 50 * scale)});
+    const LakeRecord& lake = session.scene.lakes.front();
+    const std::string title = (lake.name.empty() ? std::string("tarn") : lake.name) + "###panel";
+    if (ImGui::Begin(title.c_str(), &state.shown, ImGuiWindowFlags_NoSavedSettings)) {
+        ImGui::PushItemWidth(-110 * scale);
+        const auto section = [](const char* name, bool open) {
+            return ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+        };
+        if (section("Water level", true))
+            water_panel(session, state);
+        if (section("Sun and air", true))
+            asked.view_changed |= sun_panel(session);
+        if (section("Wind and waves", false))
+            asked.view_changed |= wind_panel(session);
+        if (section("Clarity", false))
+            asked.view_changed |= clarity_panel(session);
+        if (section("Cameras", false))
+            camera_panel(session, state);
+        if (section("Measure, layers", false))
+            measure_panel(session, state);
+        if (section("Effects and methods", false))
+            asked.view_changed |= effects_panel(session, state, asked);
+        if (section("Exposure", false))
+            asked.view_changed |= exposure_panel(session, screen);
+        if (section("Picture", false))
+            picture_panel(session, state, asked);
+        ImGui::Separator();
+        ImGui::TextDisabled("%s", state.device.c_str());
+        ImGui::TextDisabled("%.0f/s, %.0f %% of the pixels, %d samples", state.frames_per_s,
+                            100.0 * screen.scale() * screen.scale(), screen.samples_done());
+        ImGui::TextDisabled("F1: keys");
+        ImGui::PopItemWidth();
+    }
+    ImGui::End();
+    return asked;
+}
+
+void draw_overlay(Session& session, PanelState& state, float scale) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    draw_north(session, {size.x - 44 * scale, 70 * scale}, 18 * scale);
+    draw_scale(state, session, size, scale);
+    draw_gauge(session, size, scale);
+    draw_measured(session, size);
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    list.AddRectFilled({0, size.y - 26 * scale}, size, IM_COL32(0, 0, 0, 150));
+    const std::string words = state.pointer ? describe(*state.pointer) : std::string("sky");
+    list.AddText({10 * scale, size.y - 22 * scale}, IM_COL32(255, 255, 255, 255), words.c_str());
+    draw_messages(session, size, scale);
+    if (state.help)
+        draw_help(state.help);
+}
+
+void set_style(float scale) {
+    ImGui::StyleColorsDark();
+    ImGuiStyle& style = ImGui::GetStyle();
+    style.WindowRounding = 5.0f;
+    style.FrameRounding = 3.0f;
+    style.GrabRounding = 3.0f;
+    style.Colors[ImGuiCol_WindowBg] = {0.06f, 0.08f, 0.10f, 0.88f};
+    style.Colors[ImGuiCol_TitleBgActive] = {0.10f, 0.24f, 0.32f, 1.0f};
+    style.Colors[ImGuiCol_Header] = {0.14f, 0.30f, 0.38f, 0.80f};
+    style.Colors[ImGuiCol_SliderGrab] = {0.40f, 0.70f, 0.80f, 1.0f};
+    style.Colors[ImGuiCol_PlotLines] = {0.55f, 0.80f, 0.90f, 1.0f};
+    style.ScaleAllSizes(scale);
+}
+
+} // namespace tarn::view

@@ -1,0 +1,40 @@
+#pragma once
+/// @file panels.hpp  What stands at the side of the picture and over it.
+#include "view/screen.hpp"
+#include "view/session.hpp"
+
+#include <optional>
+#include <string>
+
+namespace tarn::view {
+
+/// What panels ask the window to do.
+struct Requests {
+    bool view_changed = false; ///< options, hence the picture
+    bool save_picture = false;
+    bool time_passes = false;
+    bool close = false;
+};
+
+/// Size of the saved picture and what else the panels keep between frames.
+struct PanelState {
+    bool shown = true, help = false;
+    double frames_per_s = 0.0;
+    std::string device;
+    int picture_width_px = 1920, picture_height_px = 1080, picture_samples = 16;
+    char bookmark[64] = "", layer[512] = "";
+    std::vector<std::pair<std::string, double>> pass_ms;
+    std::optional<Reading> pointer;
+    bool level_dragged = false;
+};
+
+/// The side panel.
+Requests draw_panels(Session& session, const Screen& screen, PanelState& state, float scale);
+
+/// North arrow, scale bar, depth gauge, measured lines, layers, pointer, messages, keys.
+void draw_overlay(Session& session, PanelState& state, float scale);
+
+/// One colour scheme and sizes for all.
+void set_style(float scale);
+
+} // namespace tarn::view

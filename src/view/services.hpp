@@ -1,0 +1,69 @@
+#pragma once
+/// @file services.hpp  What the window asks of the rest of the program: who gives it knows GDAL,
+/// files and the command line, the window does not.
+#include "core/image.hpp"
+#include "core/progress.hpp"
+#include "scene/settings.hpp"
+#include "view/options.hpp"
+
+#include <functional>
+#include <glm/vec2.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tarn::view {
+
+/// What the water holds at a level.
+struct Figures {
+    double level_m = 0.0, area_m2 = 0.0;
+    std::optional<double> volume_m3, max_depth_m; ///< bed known
+    bool open_at_edge = false;
+};
+
+/// Moves a lake's level. Made on a thread of its own; used by one thread at a time.
+class LevelControl {
+public:
+    virtual ~LevelControl() = default;
+    virtual double lowest_m() const = 0;
+    virtual double highest_m() const = 0;
+    virtual double usual_m() const = 0; ///< as the scene was made
+    virtual std::optional<double> spill_m() const = 0;
+    virtual Figures figures(double level_m) const = 0;
+    virtual std::vector<Figures> curve(int count, double up_to_m) const = 0;
+    /// Changes ground, water and lakes of the scene.
+    /// @param shore  shoreline, islands and the lake's middle, too: slower
+    virtual void fill(double level_m, scene::Scene& scene, bool shore) = 0;
+};
+
+/// Lines, outlines and points from a file, in scene metres.
+struct Layer {
+    std::string name;
+    std::vector<std::vector<glm::dvec2>> lines; ///< outlines come back to their start
+    struct Point {
+        glm::dvec2 place;
+        std::string label;
+    };
+    std::vector<Point> points;
+};
+
+struct Services {
+    /// The view that the options ask for; puts the water's optics into the scene.
+    /// @throws tarn::Error  saying which option is wrong
+    std::function<scene::View(const Options&, scene::Scene&)> make_view;
+    /// The command that makes the same picture.
+    std::function<std::string(const Options&)> command;
+    /// Slow: call it on a thread of its own. May throw.
+    std::function<std::unique_ptr<LevelControl>()> open_levels;
+    /// Keeps cameras in the scene folder. @throws tarn::Error
+    std::function<void(const std::vector<scene::NamedCamera>&)> save_cameras;
+    /// Writes a picture and what belongs beside it; returns its path. @throws tarn::Error
+    std::function<std::string(const Image&, const scene::Scene&, const scene::View&,
+                              const Options&)>
+        save_picture;
+    /// @throws tarn::Error
+    std::function<Layer(const std::string& path)> read_layer;
+};
+
+} // namespace tarn::view

@@ -1,0 +1,106 @@
+#pragma once
+/// @file session.hpp  What the window is about: scene, options, camera, level, measured lines.
+/// Knows neither the window nor GL.
+#include "core/cone_map.hpp"
+#include "scene/scene.hpp"
+#include "view/flight.hpp"
+#include "view/probe.hpp"
+#include "view/services.hpp"
+
+#include <deque>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace tarn::view {
+
+struct Message {
+    std::string text;
+    bool error = false;
+    double left_s = 6.0;
+};
+
+class Session {
+public:
+    /// @throws tarn::Error  if the options make no view
+    Session(scene::Scene& scene, const Services& services, Options options);
+    ~Session();
+
+    scene::Scene& scene;
+    const Services& services;
+    scene::View view; ///< that the options make; its camera is flight's
+    Flight flight;
+
+    const Options& options() const { return options_; }
+    std::string option(const std::string& name, const std::string& otherwise = {}) const;
+    double number(const std::string& name, double otherwise) const;
+    bool flag(const std::string& name) const { return option(name) == "true"; }
+    /// Changes options and makes the view anew; an empty value takes an option away. What cannot be
+    /// is said in a message, and nothing changes.
+    bool set(const Options& changes);
+    bool set(const std::string& name, const std::string& value) {
+        return set(Options{{name, value}});
+    }
+
+    /// The options with the camera as it is.
+    Options all_options() const;
+
+    /// Once a frame: takes over what other threads have finished.
+    /// @return whether the picture has changed
+    bool advance(double seconds);
+
+    // --- the level -------------------------------------------------------------------------------
+    LevelControl* levels() const { return levels_.get(); } ///< nothing until it is ready
+    double level_m() const { return level_m_; }
+    const std::optional<Figures>& figures() const { return figures_; }
+    const std::vector<Figures>& curve() const { return curve_; }
+    /// @param done  the slider was let go: count shore and islands, too
+    void set_level(double level_m, bool done);
+    double last_fill_ms() const { return last_fill_ms_; }
+    /// The scene's heights are not those that the renderer has. Ask once.
+    bool take_scene_changed();
+
+    // --- messages --------------------------------------------------------------------------------
+    void say(const std::string& text) { messages.push_back({text, false, 6.0}); }
+    void complain(const std::string& text) { messages.push_back({text, true, 12.0}); }
+    std::deque<Message> messages;
+
+    // --- bookmarks -------------------------------------------------------------------------------
+    void add_bookmark(const std::string& name);
+    void remove_bookmark(const std::string& name);
+    void go_to(const std::string& name);
+
+    // --- measuring -------------------------------------------------------------------------------
+    enum class Measuring { off, line, polygon } measuring = Measuring::off;
+    std::vector<glm::dvec3> measured;
+
+    std::vector<Layer> layers;
+    void add_layer(const std::string& path);
+
+    /// Sun and waves that go on by themselves.
+    bool play_sun = false, play_waves = false;
+    double sun_hours_per_s = 0.5;
+
+private:
+    void keep_bookmarks();
+
+    Options options_;
+    scene::WaterOptics usual_optics_;
+    std::future<std::unique_ptr<LevelControl>> opening_;
+    std::unique_ptr<LevelControl> levels_;
+    double level_m_ = 0.0, last_fill_ms_ = 0.0;
+    std::optional<Figures> figures_;
+    std::vector<Figures> curve_;
+    bool scene_changed_ = false;
+};
+
+/// "2026-06-21T09:30" to day of the year [1, 366] and hour, and back; for sliders in solar time.
+struct SolarTime {
+    int year = 2026, day = 172;
+    double hour = 9.5;
+};
+std::optional<SolarTime> parse_solar(const std::string& time);
+std::string format_solar(const SolarTime& time);
+
+} // namespace tarn::view

@@ -1,0 +1,574 @@
+#include "view/window.hpp"
+
+#include "core/cone_map.hpp"
+#include "core/error.hpp"
+#include "core/text.hpp"
+#include "gpu/gl.hpp"
+#include "render/renderer.hpp"
+#include "view/panels.hpp"
+#include "view/screen.hpp"
+#include "view/session.hpp"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <algorithm>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <future>
+#include <glm/geometric.hpp>
+#include <imgui.h>
+
+namespace tarn::view {
+
+namespace {
+
+std::string glfw_error() {
+    const char* words = nullptr;
+    glfwGetError(&words);
+    return words ? words : "no reason given";
+}
+
+/// GLFW's library and one window with a current context, both gone at the end.
+class GlfwWindow {
+public:
+    explicit GlfwWindow(const WindowSettings& settings) {
+        if (!glfwInit())
+            throw Error("no window can be opened (" + glfw_error() + ")",
+                        "without a display use tarn render and tarn sweep");
+        try {
+            open(settings);
+        } catch (...) {
+            glfwTerminate();
+            throw;
+        }
+    }
+    ~GlfwWindow() {
+        glfwDestroyWindow(window_);
+        glfwTerminate();
+    }
+    GlfwWindow(const GlfwWindow&) = delete;
+    GlfwWindow& operator=(const GlfwWindow&) = delete;
+    GLFWwindow* get() const { return window_; }
+
+private:
+    void open(const WindowSettings& settings) {
+        std::string tried;
+        // The platform's own context, or EGL's if there is no other.
+        for (const int api : {GLFW_NATIVE_CONTEXT_API, GLFW_EGL_CONTEXT_API}) {
+            if (settings.egl && api != GLFW_EGL_CONTEXT_API)
+                continue;
+            glfwWindowHint(GLFW_CONTEXT_CREATION_API, api);
+            glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+            glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+            glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+            glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+            glfwWindowHintString(GLFW_X11_CLASS_NAME, "tarn");
+            glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "tarn");
+            window_ = glfwCreateWindow(settings.width_px, settings.height_px,
+                                       settings.title.c_str(), nullptr, nullptr);
+            if (window_)
+                break;
+            tried += (tried.empty() ? "" : "; ") +
+                     std::string(api == GLFW_EGL_CONTEXT_API ? "EGL: " : "native: ") + glfw_error();
+        }
+        if (!window_)
+            throw Error("no window with OpenGL 4.5 can be opened (" + tried + ")",
+                        "run tarn doctor; without a display use tarn render and tarn sweep");
+        glfwMakeContextCurrent(window_);
+        glfwSwapInterval(1);
+    }
+    GLFWwindow* window_ = nullptr;
+};
+
+/// Dear ImGui's context and its two back ends.
+class Gui {
+public:
+    Gui(GLFWwindow* window, float scale) {
+        IMGUI_CHECKVERSION();
+        ImGui::CreateContext();
+        ImGuiIO& io = ImGui::GetIO();
+        io.IniFilename = nullptr;
+        io.ConfigFlags |= ImGuiConfigFlags_NavEnableGamepad;
+        static const ImWchar letters[] = {0x20, 0x17F, 0x2010, 0x2030, 0};
+        const char* font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+        if (!std::filesystem::exists(font) ||
+            !io.Fonts->AddFontFromFileTTF(font, std::round(14.0f * scale), nullptr, letters))
+            io.Fonts->AddFontDefault();
+        set_style(scale);
+        ImGui_ImplGlfw_InitForOpenGL(window, true);
+        ImGui_ImplOpenGL3_Init("#version 450");
+    }
+    ~Gui() {
+        ImGui_ImplOpenGL3_Shutdown();
+        ImGui_ImplGlfw_Shutdown();
+        ImGui::DestroyContext();
+    }
+    Gui(const Gui&) = delete;
+    Gui& operator=(const Gui&) = delete;
+};
+
+double now_s() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+/// Cone maps of a scene, made while it is shown by means of others.
+class ConeMaker {
+public:
+    /// Begins for the scene as it is now; what was under way is for nothing.
+    void start(const scene::Scene& scene, double lift_m) {
+        if (busy())
+            pending_ = true;
+        else
+            launch(scene, lift_m);
+    }
+    bool busy() const { return making_.valid(); }
+    /// Gives the maps to the renderer when they are ready and still right.
+    /// @return whether it did
+    bool deliver(render::Renderer& renderer, const scene::Scene& scene) {
+        if (!making_.valid() ||
+            making_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+            return false;
+        const Made made = making_.get();
+        if (pending_ || made.lift_m != renderer.water_lift_m()) {
+            pending_ = false;
+            launch(scene, renderer.water_lift_m());
+            return false;
+        }
+        renderer.give_cone_maps(made.ground, made.surface);
+        return true;
+    }
+    ~ConeMaker() {
+        if (making_.valid())
+            making_.wait();
+    }
+
+private:
+    struct Made {
+        ConeMap ground, surface;
+        double lift_m = 0.0;
+    };
+    void launch(const scene::Scene& scene, double lift_m) {
+        making_ = std::async(
+            std::launch::async, [ground = scene.ground, water = scene.water, lift_m]() mutable {
+                water.offset_m += lift_m;
+                Made made;
+                made.ground = cone_map(ground, nullptr, render::FieldBounds::cone_shift);
+                made.surface = cone_map(ground, &water, render::FieldBounds::cone_shift);
+                made.lift_m = lift_m;
+                return made;
+            });
+    }
+    std::future<Made> making_;
+    bool pending_ = false;
+};
+
+class App {
+public:
+    App(scene::Scene& scene, const Services& services, const Options& options,
+        const WindowSettings& settings)
+        : window_(settings), scale_(content_scale()), callbacks_(set_callbacks()),
+          gui_(window_.get(), scale_), session_(scene, services, options), renderer_(scene),
+          screen_(renderer_) {
+        state_.device = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+        session_.play_waves = !gpu::is_software();
+        if (gpu::is_software())
+            state_.picture_samples = 4;
+        last_s_ = now_s();
+    }
+
+    std::optional<std::string> run() {
+        while (!glfwWindowShouldClose(window_.get()))
+            frame();
+        return next_;
+    }
+
+private:
+    // Before Dear ImGui sets its own, which then call these. Keys that go down and up within one
+    // slow frame are kept.
+    bool set_callbacks() {
+        glfwSetWindowUserPointer(window_.get(), this);
+        glfwSetDropCallback(window_.get(), [](GLFWwindow* w, int count, const char** paths) {
+            static_cast<App*>(glfwGetWindowUserPointer(w))->dropped(count, paths);
+        });
+        glfwSetKeyCallback(window_.get(), [](GLFWwindow* w, int key, int, int action, int) {
+            if (action == GLFW_PRESS)
+                static_cast<App*>(glfwGetWindowUserPointer(w))->pressed_.push_back(key);
+        });
+        return true;
+    }
+    float content_scale() const {
+        float x = 1.0f, y = 1.0f;
+        glfwGetWindowContentScale(window_.get(), &x, &y);
+        return std::max(1.0f, x);
+    }
+    void frame();
+    void keys(double seconds);
+    void mouse(double seconds);
+    void read_pointer();
+    void save_picture();
+    bool show_progress(const std::string& what, double share);
+    ImTextureID screen_image() const;
+    void show();
+    void dropped(int count, const char** paths);
+    scene::View view_now();
+    std::optional<glm::dvec3> point_at(double x, double y) const;
+
+    GlfwWindow window_;
+    std::vector<int> pressed_; ///< keys since the last frame, however short
+    float scale_;
+    bool callbacks_;
+    Gui gui_;
+    Session session_;
+    render::Renderer renderer_;
+    Screen screen_;
+    PanelState state_;
+    ConeMaker cones_;
+    std::optional<std::string> next_;
+    double last_s_ = 0.0, moved_s_ = -1e9, level_s_ = -1e9;
+    bool save_asked_ = false;
+    bool changed_ = true, moving_ = false, was_moving_ = false;
+    std::optional<glm::dvec3> pivot_;
+    bool turning_ = false;
+    double pointer_x_ = 0.0, pointer_y_ = 0.0;
+    double frames_ = 0.0, frames_since_s_ = 0.0;
+    int idle_frames_ = 0;
+};
+
+scene::View App::view_now() {
+    scene::View view = session_.view;
+    view.camera = camera_of(session_.flight.pose());
+    // Until cone maps are there, what a GPU makes at once serves: it finds the same.
+    const bool cones = view.settings.walk == scene::Walk::cone_map ||
+                       view.settings.walk == scene::Walk::cone_steps;
+    if (cones && renderer_.needs_cone_maps())
+        view.settings.walk = scene::Walk::maximum_mipmap;
+    return view;
+}
+
+std::optional<glm::dvec3> App::point_at(double x, double y) const {
+    const float distance = screen_.distance_at(x, y);
+    if (std::abs(distance) >= 0.99e9f || distance == 0.0f)
+        return std::nullopt;
+    int w = 1, h = 1;
+    glfwGetFramebufferSize(window_.get(), &w, &h);
+    const glm::dvec3 d = glm::normalize(
+        scene::pixel_direction(camera_of(session_.flight.pose()), x * w, y * h, w, h));
+    return session_.flight.pose().position + d * double(std::abs(distance));
+}
+
+void App::keys(double seconds) {
+    const ImGuiIO& io = ImGui::GetIO();
+    GLFWwindow* w = window_.get();
+    const auto down = [w](int key) { return glfwGetKey(w, key) == GLFW_PRESS; };
+    const auto pressed = [this](int key) {
+        return std::find(pressed_.begin(), pressed_.end(), key) != pressed_.end();
+    };
+    Push push;
+    if (!io.WantTextInput) {
+        const bool control = io.KeyCtrl;
+        if (pressed(GLFW_KEY_F1))
+            state_.help = !state_.help;
+        if (pressed(GLFW_KEY_F12))
+            save_asked_ = true;
+        if (pressed(GLFW_KEY_TAB))
+            state_.shown = !state_.shown;
+        if (control && pressed(GLFW_KEY_Z) && session_.flight.undo())
+            changed_ = true;
+        if (control && pressed(GLFW_KEY_Y) && session_.flight.redo())
+            changed_ = true;
+        if (control && pressed(GLFW_KEY_C)) {
+            ImGui::SetClipboardText(session_.services.command(session_.all_options()).c_str());
+            session_.say("the command that makes this picture is on the clipboard");
+        }
+        if (pressed(GLFW_KEY_ESCAPE)) {
+            session_.measuring = Session::Measuring::off;
+            session_.measured.clear();
+        }
+        if (pressed(GLFW_KEY_BACKSPACE) && !session_.measured.empty())
+            session_.measured.pop_back();
+        if (pressed(GLFW_KEY_SPACE))
+            session_.play_waves = !session_.play_waves;
+        for (int k = 0; k < 9; ++k)
+            if (pressed(GLFW_KEY_1 + k) && std::size_t(k) < session_.scene.cameras.size())
+                session_.go_to(session_.scene.cameras[std::size_t(k)].name);
+        const double step = io.KeyShift ? 1.0 : 0.1;
+        if (pressed(GLFW_KEY_LEFT_BRACKET))
+            session_.set_level(session_.level_m() - step, true);
+        if (pressed(GLFW_KEY_RIGHT_BRACKET))
+            session_.set_level(session_.level_m() + step, true);
+        if (!control || !(down(GLFW_KEY_Z) || down(GLFW_KEY_Y) || down(GLFW_KEY_C))) {
+            push.forward = double(down(GLFW_KEY_W) || down(GLFW_KEY_UP)) -
+                           double(down(GLFW_KEY_S) || down(GLFW_KEY_DOWN));
+            push.right = double(down(GLFW_KEY_D) || down(GLFW_KEY_RIGHT)) -
+                         double(down(GLFW_KEY_A) || down(GLFW_KEY_LEFT));
+            push.up = double(down(GLFW_KEY_E) || down(GLFW_KEY_PAGE_UP)) -
+                      double(down(GLFW_KEY_Q) || down(GLFW_KEY_PAGE_DOWN));
+        }
+        push.boost = io.KeyShift ? 4.0 : io.KeyCtrl ? 0.25 : 1.0;
+    }
+    GLFWgamepadstate pad;
+    if (glfwGetGamepadState(GLFW_JOYSTICK_1, &pad)) {
+        const auto axis = [&](int a) {
+            const float v = pad.axes[a];
+            return std::abs(v) < 0.15f ? 0.0 : double(v);
+        };
+        push.right += axis(GLFW_GAMEPAD_AXIS_LEFT_X);
+        push.forward -= axis(GLFW_GAMEPAD_AXIS_LEFT_Y);
+        push.up +=
+            0.5 * (axis(GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER) - axis(GLFW_GAMEPAD_AXIS_LEFT_TRIGGER));
+        const double x = axis(GLFW_GAMEPAD_AXIS_RIGHT_X), y = axis(GLFW_GAMEPAD_AXIS_RIGHT_Y);
+        if (x != 0.0 || y != 0.0) {
+            session_.flight.turn(90.0 * x * seconds, -60.0 * y * seconds);
+            changed_ = moving_ = true;
+        }
+    }
+    if (push.any() && !was_moving_)
+        session_.flight.remember();
+    if (session_.flight.advance(push, seconds))
+        changed_ = moving_ = true;
+    moving_ |= push.any() || session_.flight.under_way();
+}
+
+void App::mouse(double) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool here = !io.WantCaptureMouse && io.DisplaySize.x > 0 && io.DisplaySize.y > 0;
+    const double x = io.MousePos.x / io.DisplaySize.x, y = io.MousePos.y / io.DisplaySize.y;
+    if (here && ImGui::IsMouseDoubleClicked(0) && session_.measuring == Session::Measuring::off) {
+        if (const auto point = point_at(x, y)) {
+            session_.flight.fly_to_point(*point);
+            changed_ = true;
+        }
+        pivot_.reset();
+        return;
+    }
+    if (here && ImGui::IsMouseClicked(0)) {
+        pivot_ = point_at(x, y);
+        if (session_.measuring != Session::Measuring::off) {
+            if (pivot_)
+                session_.measured.push_back(*pivot_);
+            pivot_.reset();
+        } else {
+            session_.flight.remember();
+        }
+    }
+    if (here && ImGui::IsMouseClicked(1)) {
+        turning_ = true;
+        session_.flight.remember();
+    }
+    if (!ImGui::IsMouseDown(0))
+        pivot_.reset();
+    if (!ImGui::IsMouseDown(1))
+        turning_ = false;
+    const double dx = io.MouseDelta.x, dy = io.MouseDelta.y;
+    const bool dragged = dx != 0.0 || dy != 0.0;
+    if (pivot_ && dragged) {
+        session_.flight.orbit(*pivot_, 0.3 * dx, 0.3 * dy);
+        changed_ = moving_ = true;
+    } else if (turning_ && dragged) {
+        const double degrees_a_px = session_.flight.pose().fov_deg / io.DisplaySize.y;
+        session_.flight.turn(dx * degrees_a_px, -dy * degrees_a_px);
+        changed_ = moving_ = true;
+    }
+    moving_ |= pivot_.has_value() || turning_;
+    if (here && io.MouseWheel != 0.0f) {
+        session_.flight.zoom(point_at(x, y), double(io.MouseWheel));
+        changed_ = moving_ = true;
+    }
+    pointer_x_ = x;
+    pointer_y_ = y;
+}
+
+void App::read_pointer() {
+    state_.pointer.reset();
+    int w = 1, h = 1;
+    glfwGetFramebufferSize(window_.get(), &w, &h);
+    if (!(pointer_x_ >= 0.0 && pointer_x_ < 1.0 && pointer_y_ >= 0.0 && pointer_y_ < 1.0))
+        return;
+    state_.pointer = read_place(session_.scene, session_.flight.pose().position,
+                                scene::pixel_direction(camera_of(session_.flight.pose()),
+                                                       pointer_x_ * w, pointer_y_ * h, w, h),
+                                double(screen_.distance_at(pointer_x_, pointer_y_)));
+}
+
+// Only that something goes on, and how far it is; Escape stops it.
+bool App::show_progress(const std::string& what, double share) {
+    glfwPollEvents();
+    const bool stop =
+        std::find(pressed_.begin(), pressed_.end(), GLFW_KEY_ESCAPE) != pressed_.end() ||
+        glfwWindowShouldClose(window_.get());
+    pressed_.clear();
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::GetBackgroundDrawList()->AddImage(screen_image(), {0, 0}, size);
+    ImGui::SetNextWindowPos({size.x / 2, size.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::Begin("##progress", nullptr,
+                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoDecoration);
+    ImGui::TextUnformatted((what + " - Escape stops it").c_str());
+    ImGui::ProgressBar(float(share), {320 * scale_, 0});
+    ImGui::End();
+    show();
+    return !stop;
+}
+
+ImTextureID App::screen_image() const {
+    return reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(screen_.texture()));
+}
+
+void App::show() {
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_.get(), &width, &height);
+    ImGui::Render();
+    glViewport(0, 0, width, height);
+    glClearColor(0, 0, 0, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    glfwSwapBuffers(window_.get());
+}
+
+// In strips, with the window alive in between.
+void App::save_picture() {
+    try {
+        Options options = session_.all_options();
+        options["size"] = text(state_.picture_width_px, "x", state_.picture_height_px);
+        options["samples"] = text(state_.picture_samples);
+        const scene::View view = session_.services.make_view(options, session_.scene);
+        renderer_.prepare(view);
+        const int height = view.settings.height_px, samples = view.settings.samples;
+        const int rows = std::max(16, 300'000 / view.settings.width_px / 8 * 8);
+        double shown_s = 0.0;
+        for (int sample = 0; sample < samples; ++sample)
+            for (int row = 0; row < height; row += rows) {
+                renderer_.draw_rows(sample, samples, row, std::min(rows, height - row));
+                if (now_s() - shown_s < 0.1)
+                    continue;
+                glFinish();
+                shown_s = now_s();
+                if (!show_progress("drawing the picture",
+                                   (sample + double(row) / height) / samples)) {
+                    session_.say("no picture was saved");
+                    changed_ = true;
+                    return;
+                }
+            }
+        const Image picture = renderer_.read_back();
+        session_.say("wrote " +
+                     session_.services.save_picture(picture, session_.scene, view, options));
+    } catch (const std::exception& error) {
+        session_.complain(error.what());
+    }
+    changed_ = true;
+    last_s_ = now_s();
+}
+
+void App::dropped(int count, const char** paths) {
+    for (int i = 0; i < count; ++i) {
+        const std::filesystem::path path = paths[i];
+        std::string ending = path.extension().string();
+        if (std::filesystem::is_directory(path) || ending == ".tif" || ending == ".tiff" ||
+            ending == ".hgt") {
+            next_ = path.string();
+            glfwSetWindowShouldClose(window_.get(), GLFW_TRUE);
+        } else {
+            session_.add_layer(path.string());
+        }
+    }
+}
+
+void App::frame() {
+    int width = 0, height = 0;
+    // Nothing to draw and nobody there: wait for somebody.
+    const bool hidden = glfwGetWindowAttrib(window_.get(), GLFW_ICONIFIED) != 0;
+    if (hidden || (idle_frames_ > 3 && session_.levels() && !cones_.busy()))
+        glfwWaitEventsTimeout(hidden ? 0.2 : 0.1);
+    else
+        glfwPollEvents();
+    glfwGetFramebufferSize(window_.get(), &width, &height);
+    const double now = now_s();
+    const double seconds = std::clamp(now - last_s_, 0.0, 0.25);
+    last_s_ = now;
+    if (width < 1 || height < 1 || hidden) {
+        session_.advance(seconds);
+        return;
+    }
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    moving_ = false;
+    keys(seconds);
+    pressed_.clear();
+    mouse(seconds);
+    changed_ |= session_.advance(seconds);
+    moving_ |= session_.play_sun || (session_.play_waves && !session_.view.waves.calm());
+    const Requests asked = draw_panels(session_, screen_, state_, scale_);
+    changed_ |= asked.view_changed;
+    save_asked_ |= asked.save_picture;
+    if (session_.take_scene_changed()) {
+        session_.set(Options{}); // figures of the lake go into the view
+        renderer_.scene_changed();
+        changed_ = true;
+        level_s_ = now;
+    }
+    if (state_.level_dragged)
+        moving_ = true;
+    // Cone maps when the water has come to rest.
+    const bool cones_wanted = session_.view.settings.walk == scene::Walk::cone_map ||
+                              session_.view.settings.walk == scene::Walk::cone_steps;
+    if (cones_.deliver(renderer_, session_.scene))
+        ; // the picture is the same, only faster from here on
+    else if (cones_wanted && renderer_.needs_cone_maps() && !cones_.busy() && now - level_s_ > 0.3)
+        cones_.start(session_.scene, renderer_.water_lift_m());
+    if (moving_)
+        moved_s_ = now;
+    bool drawn = false;
+    try {
+        if (asked.time_passes) {
+            scene::View view = view_now();
+            view.settings.width_px = width;
+            view.settings.height_px = height;
+            state_.pass_ms = screen_.time_passes(view);
+        }
+        if (changed_)
+            screen_.changed();
+        std::optional<double> exposure;
+        if (const double fixed_exposure = session_.number("exposure", 0.0); fixed_exposure > 0.0)
+            exposure = fixed_exposure;
+        drawn = screen_.update(view_now(), session_.scene, width, height, now - moved_s_ < 0.15,
+                               exposure, seconds);
+    } catch (const Error& error) {
+        session_.complain(error.what());
+    }
+    changed_ = false;
+    if (drawn || ImGui::GetIO().MouseDelta.x != 0.0f || ImGui::GetIO().MouseDelta.y != 0.0f)
+        read_pointer();
+    const bool settled = screen_.finished() && !moving_ && session_.messages.empty();
+    idle_frames_ = settled && !ImGui::IsAnyItemActive() ? idle_frames_ + 1 : 0;
+
+    ImGui::GetBackgroundDrawList()->AddImage(screen_image(), {0, 0}, ImGui::GetIO().DisplaySize);
+    draw_overlay(session_, state_, scale_);
+    show();
+    was_moving_ = moving_;
+    if (std::exchange(save_asked_, false)) // between two frames
+        save_picture();
+    frames_ += 1.0;
+    if (now - frames_since_s_ > 1.0) {
+        state_.frames_per_s = frames_ / (now - frames_since_s_);
+        frames_ = 0.0;
+        frames_since_s_ = now;
+    }
+}
+
+} // namespace
+
+std::optional<std::string> run_window(scene::Scene& scene, const Services& services,
+                                      const Options& options, const WindowSettings& settings) {
+    App app(scene, services, options, settings);
+    return app.run();
+}
+
+} // namespace tarn::view
