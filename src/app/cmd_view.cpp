@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 struct Words {
     ViewWords view;
     PictureWords picture;
-    std::string scene, pictures = ".";
+    std::string scene, pictures = ".", log;
     std::vector<std::string> layers;
     bool egl = false;
 };
@@ -179,6 +179,7 @@ private:
 };
 
 int run_view(const Words& words, view::Options options) {
+    const auto started = std::chrono::steady_clock::now();
     std::optional<std::string> next = words.scene;
     bool first = true;
     while (next) {
@@ -204,6 +205,8 @@ int run_view(const Words& words, view::Options options) {
             {.width_px = width,
              .height_px = height,
              .title = (name.empty() ? fs::path(*next).filename().string() : name) + " - tarn",
+             .log = first ? words.log : "",
+             .started = started,
              .egl = words.egl});
         options.clear();
         first = false;
@@ -221,6 +224,8 @@ void add_view(CLI::App& app, Run& run) {
         ->required();
     c->add_option("--pictures", words->pictures, "folder that F12 writes to")
         ->capture_default_str();
+    c->add_option("--session-log", words->log,
+                  "file for what goes on, a JSON object a line: start, frames, levels, poses");
     c->add_flag("--egl", words->egl, "an EGL context instead of the platform's own");
     add_view_options(*c, words->view);
     add_picture_options(*c, words->picture);
@@ -232,7 +237,7 @@ void add_view(CLI::App& app, Run& run) {
             apply_settings_file(*c, words->view);
             view::Options options;
             for (const auto& [name, value] : given_options(*c))
-                if (name != "pictures" && name != "egl")
+                if (name != "pictures" && name != "egl" && name != "session-log")
                     options[name] = value;
             return run_view(*words, options);
         };

@@ -80,15 +80,17 @@ void Renderer::upload_heights() {
                    0.0f};
 }
 
-void Renderer::scene_changed() {
+void Renderer::scene_changed(bool settled) {
     upload_heights();
     bounds_.scene_changed();
-    shadow_sun_.reset();
-    if (waves_)
-        waves_->set(
-            waves::make_sea(scene_.ground, scene_.water, scene_.lakes, waves_->sea().settings));
-    wave_time_s_.reset();
-    sunlight_settings_.reset();
+    if (settled) {
+        shadow_sun_.reset();
+        if (waves_)
+            waves_->set(waves::make_sea(scene_.ground, scene_.water, scene_.lakes,
+                                        waves_->sea().settings));
+        wave_time_s_.reset();
+        sunlight_settings_.reset();
+    }
     lift_water(lift_m_);
     gpu::check_gl("uploading the scene");
 }

@@ -67,7 +67,8 @@ public:
 
     /// Reads heights, lakes and optics of the scene again, which somebody has changed; sizes and
     /// the photograph must be the same. Then prepare().
-    void scene_changed();
+    /// @param settled  false while somebody drags a level: waves and land's shadow stay as they were
+    void scene_changed(bool settled = true);
 
     /// Cone maps made elsewhere, on a thread of their own say, in place of those that the next
     /// prepare() would wait for.

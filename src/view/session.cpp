@@ -15,7 +15,11 @@ Session::Session(scene::Scene& s, const Services& v, Options options)
       options_(std::move(options)), usual_optics_(s.optics) {
     options_.erase("camera"); // from here on it is flight's
     level_m_ = scene.lakes.front().level_m;
-    opening_ = std::async(std::launch::async, services.open_levels);
+}
+
+void Session::open_levels() {
+    if (!opening_.valid() && !levels_)
+        opening_ = std::async(std::launch::async, services.open_levels);
 }
 
 Session::~Session() {

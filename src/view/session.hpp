@@ -51,6 +51,8 @@ public:
     bool advance(double seconds);
 
     // --- the level -------------------------------------------------------------------------------
+    /// Begins to follow the water, on a thread of its own.
+    void open_levels();
     LevelControl* levels() const { return levels_.get(); } ///< nothing until it is ready
     double level_m() const { return level_m_; }
     const std::optional<Figures>& figures() const { return figures_; }
@@ -62,8 +64,15 @@ public:
     bool take_scene_changed();
 
     // --- messages --------------------------------------------------------------------------------
-    void say(const std::string& text) { messages.push_back({text, false, 6.0}); }
-    void complain(const std::string& text) { messages.push_back({text, true, 12.0}); }
+    void say(const std::string& text) {
+        messages.push_back({text, false, 6.0});
+        ++said_;
+    }
+    void complain(const std::string& text) {
+        messages.push_back({text, true, 12.0});
+        ++said_;
+    }
+    std::size_t messages_said() const { return said_; }
     std::deque<Message> messages;
 
     // --- bookmarks -------------------------------------------------------------------------------
@@ -93,6 +102,7 @@ private:
     std::optional<Figures> figures_;
     std::vector<Figures> curve_;
     bool scene_changed_ = false;
+    std::size_t said_ = 0;
 };
 
 /// "2026-06-21T09:30" to day of the year [1, 366] and hour, and back; for sliders in solar time.

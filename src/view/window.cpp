@@ -8,6 +8,7 @@
 #include "view/panels.hpp"
 #include "view/screen.hpp"
 #include "view/session.hpp"
+#include "view/session_log.hpp"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -172,7 +173,8 @@ public:
         const WindowSettings& settings)
         : window_(settings), scale_(content_scale()), callbacks_(set_callbacks()),
           gui_(window_.get(), scale_), session_(scene, services, options), renderer_(scene),
-          screen_(renderer_) {
+          screen_(renderer_), log_(settings.log),
+          started_s_(std::chrono::duration<double>(settings.started.time_since_epoch()).count()) {
         state_.device = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
         session_.play_waves = !gpu::is_software();
         if (gpu::is_software())
@@ -183,6 +185,7 @@ public:
     std::optional<std::string> run() {
         while (!glfwWindowShouldClose(window_.get()))
             frame();
+        log_.write(now_s() - started_s_, "closed", {});
         return next_;
     }
 
@@ -210,6 +213,7 @@ private:
     void mouse(double seconds);
     void read_pointer();
     void save_picture();
+    void log_frame(double began_s, bool drawn);
     bool show_progress(const std::string& what, double share);
     ImTextureID screen_image() const;
     void show();
@@ -228,6 +232,10 @@ private:
     PanelState state_;
     ConeMaker cones_;
     std::optional<std::string> next_;
+    SessionLog log_;
+    double started_s_, logged_level_m_ = NAN;
+    std::size_t messages_logged_ = 0;
+    bool shown_once_ = false;
     double last_s_ = 0.0, moved_s_ = -1e9, level_s_ = -1e9;
     bool save_asked_ = false;
     bool changed_ = true, moving_ = false, was_moving_ = false;
@@ -480,6 +488,45 @@ void App::dropped(int count, const char** paths) {
     }
 }
 
+void App::log_frame(double began_s, bool drawn) {
+    const bool first = drawn && !shown_once_;
+    if (first) {
+        shown_once_ = true;
+        session_.open_levels(); // with the cores to itself until here
+    }
+    if (!log_.on())
+        return;
+    const double end = now_s(), t = end - started_s_;
+    if (first)
+        log_.write(t, "first picture", {{"start_ms", 1e3 * t}}, state_.device);
+    log_.frame(t, 1e3 * (end - began_s), moving_);
+    if (session_.levels() && session_.level_m() != logged_level_m_) {
+        logged_level_m_ = session_.level_m();
+        log_.write(t, "level",
+                   {{"level_m", logged_level_m_},
+                    {"refill_ms", session_.last_fill_ms()},
+                    {"area_m2", session_.figures() ? session_.figures()->area_m2 : 0.0}});
+    }
+    if (was_moving_ && !moving_) {
+        const Pose& p = session_.flight.pose();
+        const auto water = session_.scene.water_level_m(p.position.x, p.position.y);
+        log_.write(t, "pose",
+                   {{"x", p.position.x},
+                    {"y", p.position.y},
+                    {"z", p.position.z},
+                    {"heading_deg", p.heading_deg},
+                    {"pitch_deg", p.pitch_deg},
+                    {"ground_m",
+                     session_.scene.ground.elevation_m(p.position.x, p.position.y)},
+                    {"under_water", water && p.position.z < *water ? 1.0 : 0.0}});
+    }
+    for (; messages_logged_ < session_.messages_said(); ++messages_logged_)
+        log_.write(t, session_.messages.back().error ? "complaint" : "message", {},
+                   session_.messages.back().text);
+    for (GLenum error = glGetError(); error != GL_NO_ERROR; error = glGetError())
+        log_.write(t, "gl error", {{"code", double(error)}});
+}
+
 void App::frame() {
     int width = 0, height = 0;
     // Nothing to draw and nobody there: wait for somebody.
@@ -509,16 +556,19 @@ void App::frame() {
     changed_ |= asked.view_changed;
     save_asked_ |= asked.save_picture;
     if (session_.take_scene_changed()) {
-        session_.set(Options{}); // figures of the lake go into the view
-        renderer_.scene_changed();
+        const double before = now_s();
+        renderer_.scene_changed(!state_.level_dragged);
+        glFinish();
+        log_.write(now - started_s_, "upload", {{"ms", 1e3 * (now_s() - before)}});
         changed_ = true;
         level_s_ = now;
     }
     if (state_.level_dragged)
         moving_ = true;
-    // Cone maps when the water has come to rest.
-    const bool cones_wanted = session_.view.settings.walk == scene::Walk::cone_map ||
-                              session_.view.settings.walk == scene::Walk::cone_steps;
+    // Cone maps when the water has come to rest, and the first picture stands.
+    const scene::Walk walk = session_.view.settings.walk;
+    const bool cones_wanted =
+        shown_once_ && (walk == scene::Walk::cone_map || walk == scene::Walk::cone_steps);
     if (cones_.deliver(renderer_, session_.scene))
         ; // the picture is the same, only faster from here on
     else if (cones_wanted && renderer_.needs_cone_maps() && !cones_.busy() && now - level_s_ > 0.3)
@@ -552,6 +602,7 @@ void App::frame() {
     ImGui::GetBackgroundDrawList()->AddImage(screen_image(), {0, 0}, ImGui::GetIO().DisplaySize);
     draw_overlay(session_, state_, scale_);
     show();
+    log_frame(now, drawn);
     was_moving_ = moving_;
     if (std::exchange(save_asked_, false)) // between two frames
         save_picture();
