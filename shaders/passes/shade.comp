@@ -6,6 +6,9 @@
 #include "lib/air.glsl"
 #endif
 #include "lib/ground_colour.glsl"
+#ifdef TARN_MAP
+#include "lib/markings.glsl"
+#endif
 #include "lib/medium.glsl"
 #include "lib/parts.glsl"
 #include "lib/sky.glsl"
@@ -18,6 +21,10 @@ layout(binding = TARN_TEXTURE_SKY) uniform sampler2D sky_table;
 layout(binding = TARN_TEXTURE_WATER) uniform sampler2D water;
 layout(binding = TARN_TEXTURE_ORTHO) uniform sampler2D ortho;
 layout(binding = TARN_TEXTURE_OVERLAY) uniform sampler2D overlay;
+#ifdef TARN_MAP
+layout(binding = TARN_TEXTURE_EXPOSED) uniform sampler2D exposed;
+layout(binding = TARN_TEXTURE_DRAPE) uniform sampler2D drape;
+#endif
 #ifdef TARN_LAND_SHADOW
 layout(binding = TARN_TEXTURE_LAND_SHADOW) uniform sampler2D land_shadow;
 #endif
@@ -90,6 +97,29 @@ float pattern_left(float path_m) {
     return clamp(drawn / max(dot(luminance, transmittance(water, view.water, path_m)), 1e-9), 0.0, 1.0);
 }
 
+#ifdef TARN_MAP
+// Contours and draped lines over an albedo.
+//
+//   nodes   place on the ground, grid
+//   z       its height [m], level: of water over it
+vec3 marked(vec3 albedo, vec2 nodes, float z, bool in_water, float level, float slope, float footprint) {
+    float interval = in_water ? view.map.y : view.map.x;
+    if (interval > 0.0) {
+        float height = in_water ? level - z : z + view.map.w;
+        albedo = mix(albedo, in_water ? vec3(0.55) : vec3(0.03, 0.02, 0.01),
+                     0.75 * contour_cover(height, interval, slope, footprint));
+    }
+    if (view.drape.w > 0.0) {
+        vec2 at = (nodes - view.drape.xy) / (view.drape.z * vec2(textureSize(drape, 0)));
+        if (all(greaterThan(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)))) {
+            float near = textureLod(drape, at, 0.0).r;
+            albedo = mix(albedo, vec3(0.85, 0.18, 0.05), drape_cover(near, view.drape.w, 2.4, footprint));
+        }
+    }
+    return albedo;
+}
+#endif
+
 // Radiance that leaves the ground where a part ended: land in the air, bed under water.
 //
 //   path_m   length of the way from the camera, for the footprint of a pixel
@@ -126,6 +156,16 @@ vec3 ground_radiance(Part part, End end, float path_m, float water_m, Sunlit sun
                 albedo = mix(albedo, photo_albedo * photo.rgb, photo.a);
             }
         }
+#ifdef TARN_MAP
+        if (view.exposed.y > 0.0 && !part.in_water) { // was bed, and nothing has grown there since
+            float bare = textureLod(exposed, (nodes + 0.5) * view.inverse_size.xy, 0.0).r;
+            if (bare > 0.0)
+                albedo = mix(albedo, 1.25 * ground_albedo(nodes * view.grid.z, z - view.exposed.x, true, near_water,
+                                                          view.look.x - shore, view.look.y - shore,
+                                                          length(gradient) / view.grid.z, footprint), bare);
+        }
+        albedo = marked(albedo, nodes, z, part.in_water, part.level, length(gradient) / view.grid.z, footprint);
+#endif
     }
     vec3 towards = part.in_water ? sun_below(view.sun.xyz, view.optics.x) : view.sun.xyz;
     float depth = part.in_water ? max(part.level - z, 0.0) : 0.0;
@@ -262,6 +302,22 @@ Glitter glitter_of(Part first, End end, WaveSurface surface) {
 }
 #endif
 
+#ifdef TARN_MAP
+// Radiance of the surface as a matte sheet in the colour of the depth below it.
+vec3 depth_sheet(Part part, End end) {
+    vec4 corners = textureGather(heights, (vec2(end.cell) + 1.0) * view.inverse_size.xy, 0) * view.heights.y;
+    float level = surface_level(heights, view, part, end);
+    float z = bilinear(corners, end.inside);
+    vec3 albedo = depth_colour((level - z) / view.map.z);
+    vec2 gradient = ground_gradient(heights, view.grid.xy, end.cell, end.inside, view.heights.y);
+    albedo = marked(albedo, vec2(end.cell) + end.inside, z, true, level, length(gradient) / view.grid.z,
+                    view.camera.w * end.t);
+    // As if nothing stood in the sun's way, and no brighter than land: a map is to be read.
+    vec3 irradiance = 0.35 * (view.sky_irradiance.rgb + max(view.sun.z, 0.0) * view.sun_irradiance.rgb);
+    return albedo * inverse_pi * irradiance;
+}
+#endif
+
 void main() {
     ivec2 local = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(local, view.tile.zw)))
@@ -279,7 +335,14 @@ void main() {
     vec3 remaining = first.in_water ? transmittance(water, view.water, water_m) : vec3(1.0); // of light from its end
     if ((first_end.flags & end_overlay) != 0u)
         radiance += overlay_radiance(first, first_end, texelFetch(overlay, pixel, 0).rgb);
-    if ((first_end.flags & end_surface) != 0u) {
+    bool sheet = false; // the water shows its depth instead of itself
+#ifdef TARN_MAP
+    if ((first_end.flags & end_surface) != 0u && !first.in_water && view.map.z > 0.0) {
+        sheet = true;
+        radiance += depth_sheet(first, first_end);
+    }
+#endif
+    if ((first_end.flags & end_surface) != 0u && !sheet) {
 #ifdef TARN_WAVES
         WaveSurface met = unpack_surface(imageLoad(surfaces, local));
         float level = surface_level(heights, view, first, first_end);

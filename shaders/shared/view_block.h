@@ -28,7 +28,9 @@ using ivec4 = glm::ivec4;
 #define TARN_TEXTURE_WATER 12  // RGBA32F: what water does to light by colour (lib/medium.glsl)
 #define TARN_TEXTURE_LAND_SHADOW 14 // R32F: below this height [m above heights.x] land hides the sun
 #define TARN_TEXTURE_BEAMS 4   // R32F: free path of each tile of 8 x 8 pixels [m]
-#define TARN_TEXTURE_PICTURE 15 // the picture so far: passes/display.comp, passes/meter.comp
+#define TARN_TEXTURE_EXPOSED 16 // R8: share of bed that has fallen dry, a texel a node
+#define TARN_TEXTURE_DRAPE 17  // R8: nearness of draped lines over the ground (lib/markings.glsl)
+#define TARN_TEXTURE_PICTURE 20 // the picture so far: passes/display.comp, passes/meter.comp
 #define TARN_BUFFER_METER 1    // passes/meter.comp
 #define TARN_IMAGE_SCREEN 6    // rgba8: passes/display.comp; beams are written before a picture, this after it
 #define TARN_IMAGE_RADIANCE 0  // rgba32f
@@ -81,10 +83,15 @@ struct ViewBlock {
                           // z: setting of the walk, w: the bottom
     vec4 slab;            // x: lowest ground, y: highest water,
                           // zw: steepest slope of the ground's and the surface's cone map, units a cell
+    // For what maps draw, with TARN_MAP:
+    vec4 map;             // x: interval of contours on land [m], y: in water, z: depth of the darkest colour of
+                          // depth [m]; 0: none of them; w: what is added to z for heights that contours count from
+    vec4 drape;           // xy: grid position of its north-west corner, z: nodes a texel, w: reach of nearness [m], 0: none
+    vec4 exposed;         // x: level that the bed was exposed from [m], y: 1 if there is such, zw: -
     ivec4 walk;           // x: level of the root block, y: cone map's blocks are 2^y cells a side, zw: -
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewBlock) == 400 && offsetof(ViewBlock, walk) == 384, "std140 layout");
+static_assert(sizeof(ViewBlock) == 448 && offsetof(ViewBlock, walk) == 432, "std140 layout");
 } // namespace tarn::shared
 #endif

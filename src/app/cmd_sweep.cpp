@@ -158,7 +158,9 @@ class Sweep {
 public:
     Sweep(const Words& words, const scene_files::OptionList& common)
         : words_(words), common_(common), plan_(make_plan(words)),
-          scene_(scene_files::load(words.scene)), identity_(scene_files::identity(words.scene)) {}
+          scene_(scene_files::load(words.scene)), identity_(scene_files::identity(words.scene)) {
+        lay_layers(words.view, scene_);
+    }
 
     const Plan& plan() const { return plan_; }
     const scene::Scene& scene() const { return scene_; }
@@ -270,8 +272,7 @@ int Sweep::draw(const std::vector<Job>& jobs) {
             if (level != job.level) {
                 renderer.reset();
                 refill();
-                moved->fill(plan_.levels_m[job.level], scene.ground, scene.water, scene.lakes,
-                            true);
+                move_level(*moved, plan_.levels_m[job.level], scene, true);
                 level = job.level;
             }
             const scene::View view = make_view(words, scene);

@@ -49,7 +49,7 @@ public:
         return out;
     }
     void fill(double level_m, scene::Scene& scene, bool shore) override {
-        refill_.fill(level_m, scene.ground, scene.water, scene.lakes, shore);
+        move_level(refill_, level_m, scene, shore);
     }
 
 private:
@@ -181,22 +181,37 @@ private:
 int run_view(const Words& words, view::Options options) {
     const auto started = std::chrono::steady_clock::now();
     std::optional<std::string> next = words.scene;
+    std::string shown, message;
     bool first = true;
     while (next) {
         std::optional<TemporaryScene> temporary;
         std::string folder = *next;
-        if (!fs::is_directory(folder)) {
-            temporary.emplace(folder);
-            folder = temporary->path();
+        scene::Scene scene;
+        try {
+            if (!fs::is_directory(folder)) {
+                temporary.emplace(folder);
+                folder = temporary->path();
+            }
+            scene = scene_files::load(folder);
+            if (first)
+                lay_layers(words.view, scene); // refuses what cannot be read before a window opens
+        } catch (const Error& error) {
+            if (first)
+                throw;
+            message = error.what(); // back to what was shown before
+            temporary.reset();
+            if (!fs::is_directory(shown))
+                throw;
+            folder = shown;
+            scene = scene_files::load(folder);
         }
-        scene::Scene scene = scene_files::load(folder);
         const scene::Scene as_imported = scene;
         if (const auto level = words.view.level_m; level && first) {
             dem::Refill refill = make_refill(folder, scene, words.view.lake, console_progress());
-            refill.fill(*level, scene.ground, scene.water, scene.lakes, true);
+            move_level(refill, *level, scene, true);
             end_progress();
         }
-        int width = 1280, height = 720;
+        int width = 1280, height = 800;
         if (const auto size = options.find("size"); size != options.end())
             std::sscanf(size->second.c_str(), "%dx%d", &width, &height);
         const std::string name = scene.lakes.front().name;
@@ -205,11 +220,14 @@ int run_view(const Words& words, view::Options options) {
             {.width_px = width,
              .height_px = height,
              .title = (name.empty() ? fs::path(*next).filename().string() : name) + " - tarn",
+             .message = std::exchange(message, {}),
              .log = first ? words.log : "",
              .started = started,
              .egl = words.egl});
         options.clear();
         first = false;
+        if (!temporary)
+            shown = folder;
     }
     return 0;
 }

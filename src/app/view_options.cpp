@@ -3,9 +3,11 @@
 #include "app/console.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
+#include "dem/vectors.hpp"
 #include "geo/frame.hpp"
 #include "geo/sun.hpp"
 #include "image/files.hpp"
+#include "scene/drape.hpp"
 #include "scene/environment.hpp"
 #include "scene/presets.hpp"
 #include "scene/water_types.hpp"
@@ -154,13 +156,48 @@ std::vector<double> parse_levels(const std::string& words) {
 
 scene::Scene load_scene(const std::string& folder, const ViewWords& words) {
     scene::Scene scene = scene_files::load(folder);
+    lay_layers(words, scene);
     if (!words.level_m)
         return scene;
     const Progress progress = console_progress();
     dem::Refill refill = make_refill(folder, scene, words.lake, progress);
-    refill.fill(*words.level_m, scene.ground, scene.water, scene.lakes, true);
+    move_level(refill, *words.level_m, scene, true);
     end_progress();
     return scene;
+}
+
+void move_level(dem::Refill& refill, double level_m, scene::Scene& scene, bool shore) {
+    refill.fill(level_m, scene.ground, scene.water, scene.lakes, shore);
+    scene.exposed_bed.reset();
+    if (level_m < refill.lake().level_m)
+        if (auto bare = refill.exposed_bed())
+            scene.exposed_bed = {refill.lake().level_m, std::move(*bare)};
+}
+
+void lay_layers(const ViewWords& words, scene::Scene& scene) {
+    std::vector<std::vector<glm::dvec2>> lines;
+    std::vector<glm::dvec2> points;
+    for (std::size_t from = 0; from < words.layers.size();) {
+        const std::size_t end = std::min(words.layers.find(':', from), words.layers.size());
+        if (end > from)
+            for (const dem::VectorFeature& f :
+                 dem::read_vectors(words.layers.substr(from, end - from), scene.frame)) {
+                for (const auto& line : f.lines) {
+                    lines.emplace_back();
+                    for (const ScenePoint& p : line)
+                        lines.back().push_back({p.x_m, p.y_m});
+                }
+                for (const ScenePoint& p : f.points)
+                    points.push_back({p.x_m, p.y_m});
+            }
+        from = end + 1;
+    }
+    scene.drape.reset();
+    if (lines.empty() && points.empty())
+        return;
+    scene.drape = scene::make_drape(scene.ground, lines, points);
+    if (!scene.drape)
+        throw Error("--layers: nothing of them lies on the scene", "check their places and CRS");
 }
 
 dem::Refill make_refill(const std::string& folder, const scene::Scene& scene, int lake_id,
@@ -283,6 +320,16 @@ void add_view_options(CLI::App& c, ViewWords& w) {
          "x,y [scene m]; above_ground, above_water or z [m]; heading, pitch or dx,dy,dz,ux,uy,uz; "
          "fov")
         ->capture_default_str();
+    c.add_option("--contours", w.settings.contours_m,
+                 "contour lines on land, so far apart in height [m]; every fifth is broader");
+    c.add_option("--depth-contours", w.settings.depth_contours_m,
+                 "contour lines on beds, so far apart in depth [m]");
+    c.add_option("--depth-colours", w.settings.depth_colours_m,
+                 "show water as a map of its depth, the darkest at this one [m]");
+    c.add_option(
+        "--layers", w.layers,
+        "vector files (GeoJSON, GeoPackage, GPX, shapefile ...) with : between them, drawn "
+        "on ground and bed");
     c.add_option("--level", w.level_m, "water level to show [m]; default: as imported");
     c.add_option("--lake", w.lake, "id of the lake whose level that is (tarn info)")
         ->capture_default_str();

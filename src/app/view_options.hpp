@@ -33,6 +33,7 @@ struct ViewWords {
     std::optional<std::uint32_t> wave_seed;
     std::optional<double> level_m; ///< of the lake that moves; default: as imported
     int lake = 1;                  ///< its id
+    std::string layers;            ///< vector files, colons between them
     std::string settings_file;
 };
 
@@ -69,6 +70,14 @@ scene::Scene load_scene(const std::string& folder, const ViewWords& words);
 /// @throws tarn::Error
 dem::Refill make_refill(const std::string& folder, const scene::Scene& scene, int lake_id,
                         const Progress& progress);
+
+/// Moves the level of a scene: its water, lakes and the bed that falls dry.
+/// @throws tarn::Error  if it cannot stand there
+void move_level(dem::Refill& refill, double level_m, scene::Scene& scene, bool shore);
+
+/// Lays the layers that the words name over the ground.
+/// @throws tarn::Error  naming the file
+void lay_layers(const ViewWords& words, scene::Scene& scene);
 
 /// "300:320:0.5" (both ends included) or "300,310,313.31": levels [m].
 /// @throws tarn::Error

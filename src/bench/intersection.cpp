@@ -163,7 +163,10 @@ std::vector<IntersectionResult> compare_methods(const scene::Scene& scene, const
                              .shadows = false,
                              .reflection = false,
                              .refraction = false,
-                             .ground_albedo = {}};
+                             .ground_albedo = {},
+                             .contours_m = {},
+                             .depth_contours_m = {},
+                             .depth_colours_m = {}};
             const Truth truth = truth_of(scene, view, options.judged_rays);
             for (const Candidate& candidate : all) {
                 progress.report(double(results.size()) / total,

@@ -199,6 +199,26 @@ std::vector<std::size_t> Refill::drowned(double level_m) const {
     return out;
 }
 
+std::optional<Grid<std::uint8_t>> Refill::exposed_bed() const {
+    Grid<std::uint8_t> out(z_.size);
+    const auto own = static_cast<std::uint16_t>(mark());
+    const auto level = static_cast<float>(lake().level_m); // its own nodes get wet below it
+    std::vector<char> any(std::size_t(z_.size.rows), 0);
+    share_out(z_.size.rows, 0, [&](int first, int last) {
+        for (int row = first; row < last; ++row) {
+            const std::size_t start = out.index({0, row});
+            for (std::size_t i = start; i < start + std::size_t(z_.size.cols); ++i)
+                if (wets_.values[i] < level && lake_of_.values[i] != own) {
+                    out.values[i] = 255;
+                    any[std::size_t(row)] = 1;
+                }
+        }
+    });
+    if (std::find(any.begin(), any.end(), 1) == any.end())
+        return std::nullopt;
+    return out;
+}
+
 void Refill::fill(double level_m, Heightfield& ground, Heightfield& water,
                   std::vector<LakeRecord>& lakes, bool shore) {
     const WaterFigures found = figures(level_m);

@@ -59,6 +59,10 @@ public:
     void fill(double level_m, Heightfield& ground, Heightfield& water,
               std::vector<LakeRecord>& lakes, bool shore);
 
+    /// Where the lake stood as the scene was made and does not after the last fill(): 255, else 0.
+    /// Nothing if there is no such node.
+    std::optional<Grid<std::uint8_t>> exposed_bed() const;
+
     /// Nodes of the moved lake as the last fill() left them are those with this mark.
     const LakeOf& lake_of() const { return lake_of_; }
     int mark() const { return int(lake_) + 1; }

@@ -337,6 +337,19 @@ private:
         return share;
     }
 
+    /// Share of bed that has fallen dry, bilinear between nodes.
+    double bare_share(const Hit& hit) const {
+        const Grid<std::uint8_t>& share = scene_.exposed_bed->share;
+        const int c = std::clamp(int(hit.col), 0, share.size.cols - 2);
+        const int r = std::clamp(int(hit.row), 0, share.size.rows - 2);
+        const double u = hit.col - c, v = hit.row - r;
+        double sum = 0.0;
+        for (int k = 0; k < 4; ++k)
+            sum +=
+                share[{c + k % 2, r + k / 2}] / 255.0 * (k % 2 ? u : 1 - u) * (k / 2 ? v : 1 - v);
+        return sum;
+    }
+
     glm::dvec3 albedo(const Hit& hit, bool bed, double level_m, double slope,
                       double footprint) const {
         if (settings_.ground_albedo)
@@ -364,6 +377,10 @@ private:
         const glm::dvec3 normal = normal_at(hit, slope);
         const double level = scene_.lakes.front().level_m;
         glm::dvec3 colour = albedo(hit, false, level, slope, footprint);
+        if (scene_.exposed_bed && !settings_.ground_albedo) // was bed: nothing has grown there
+            colour = glm::mix(
+                colour, 1.25 * albedo(hit, true, scene_.exposed_bed->level_m, slope, footprint),
+                bare_share(hit));
         if (!settings_.ground_albedo && !photo_.empty()) {
             const glm::dvec4 photo = photo_.at(hit.point.x, hit.point.y, footprint);
             colour =

@@ -80,14 +80,45 @@ void Renderer::upload_heights() {
                    0.0f};
 }
 
+// What is exposed or draped; one texel stands for nothing.
+void Renderer::upload_map() {
+    const GridSize size = scene_.ground.size();
+    if (scene_.exposed_bed) {
+        if (exposed_.width_px() != size.cols || exposed_.height_px() != size.rows)
+            exposed_ =
+                gpu::Texture2D(GL_R8, size.cols, size.rows, 1, gpu::Filter::linear, "exposed bed");
+        exposed_.upload(GL_RED, GL_UNSIGNED_BYTE, scene_.exposed_bed->share.values.data());
+        block_.exposed = {float(scene_.exposed_bed->level_m - scene_.ground.offset_m), 1.0f, 0.0f,
+                          0.0f};
+    } else {
+        block_.exposed = {0, 0, 0, 0};
+    }
+    if (scene_.drape) {
+        const scene::Drape& d = *scene_.drape;
+        if (drape_.width_px() != d.cols || drape_.height_px() != d.rows)
+            drape_ = gpu::Texture2D(GL_R8, d.cols, d.rows, 1, gpu::Filter::linear, "drape");
+        drape_.upload(GL_RED, GL_UNSIGNED_BYTE, d.nearness.data());
+        const double s = scene_.ground.spacing_m;
+        block_.drape = {float((d.west_m - scene_.ground.west_m) / s),
+                        float((scene_.ground.north_m - d.north_m) / s), float(d.texel_m / s),
+                        float(d.reach_m)};
+    } else {
+        block_.drape = {0, 0, 0, 0};
+    }
+    for (gpu::Texture2D* texture : {&exposed_, &drape_})
+        if (texture->id() == 0)
+            *texture = gpu::Texture2D(GL_R8, 1, 1, 1, gpu::Filter::linear, "no map");
+}
+
 void Renderer::scene_changed(bool settled) {
     upload_heights();
+    upload_map();
     bounds_.scene_changed();
     if (settled) {
         shadow_sun_.reset();
         if (waves_)
-            waves_->set(waves::make_sea(scene_.ground, scene_.water, scene_.lakes,
-                                        waves_->sea().settings));
+            waves_->set(
+                waves::make_sea(scene_.ground, scene_.water, scene_.lakes, waves_->sea().settings));
         wave_time_s_.reset();
         sunlight_settings_.reset();
     }
@@ -103,6 +134,7 @@ void Renderer::upload_scene() {
     const Heightfield& ground = scene_.ground;
     const GridSize size = ground.size();
     upload_heights();
+    upload_map();
     block_.walk = {FieldBounds::root_level(size), FieldBounds::cone_shift, 0, 0};
     block_.grid = {float(size.cols), float(size.rows), float(ground.spacing_m), 0.0f};
     block_.forward.w = float(scene::block_bottom_m(ground) - ground.offset_m);
@@ -149,7 +181,8 @@ std::string Renderer::sunlight_defines() const {
 std::string Renderer::air_defines() const {
     return std::string(hazy_ ? "#define TARN_HAZE 1\n" : "") +
            (whole_sky_ ? "#define TARN_WHOLE_SKY 1\n" : "") +
-           (shadowed_ ? "#define TARN_LAND_SHADOW 1\n" : "");
+           (shadowed_ ? "#define TARN_LAND_SHADOW 1\n" : "") +
+           (mapped_ ? "#define TARN_MAP 1\n" : "");
 }
 
 void Renderer::use_walk(scene::Walk walk, double setting) {
@@ -455,6 +488,17 @@ void Renderer::prepare(const scene::View& view) {
     use_walk(settings.walk, settings.walk_setting);
     hazy_ = light.visibility_m.has_value();
     whole_sky_ = light.sky.whole_turn;
+    const double interval = settings.contours_m.value_or(1.0);
+    block_.map = {float(settings.contours_m.value_or(0.0)),
+                  float(settings.depth_contours_m.value_or(0.0)),
+                  float(settings.depth_colours_m.value_or(0.0)),
+                  float(std::fmod(ground.offset_m, 5.0 * interval))};
+    mapped_ = settings.contours_m || settings.depth_contours_m || settings.depth_colours_m ||
+              scene_.exposed_bed || scene_.drape;
+    if (mapped_) {
+        exposed_.bind(TARN_TEXTURE_EXPOSED);
+        drape_.bind(TARN_TEXTURE_DRAPE);
+    }
     prepare_land_shadow(view);
     use_shade();
     bounds_.prepare(walk_, false);

@@ -67,8 +67,12 @@ public:
 
     /// Reads heights, lakes and optics of the scene again, which somebody has changed; sizes and
     /// the photograph must be the same. Then prepare().
-    /// @param settled  false while somebody drags a level: waves and land's shadow stay as they were
+    /// @param settled  false while somebody drags a level: waves and land's shadow stay as they
+    /// were
     void scene_changed(bool settled = true);
+
+    /// The same for what is draped alone.
+    void map_changed() { upload_map(); }
 
     /// Cone maps made elsewhere, on a thread of their own say, in place of those that the next
     /// prepare() would wait for.
@@ -136,6 +140,7 @@ private:
     std::string air_defines() const;
     std::string sunlight_defines() const;
     void upload_heights();
+    void upload_map();
     void prepare_sunlight(const scene::View& view, bool moved);
     void prepare_land_shadow(const scene::View& view);
     void use_walk(scene::Walk walk, double setting);
@@ -161,7 +166,8 @@ private:
     gpu::Buffer view_buffer_, lakes_;
     std::map<std::string, gpu::ComputeProgram> shade_; ///< by air_defines()
     const gpu::ComputeProgram* calm_shade_ = nullptr;  ///< of them, for this picture
-    bool hazy_ = false, whole_sky_ = false;
+    bool hazy_ = false, whole_sky_ = false, mapped_ = false;
+    gpu::Texture2D exposed_, drape_;
     gpu::Texture2D land_shadow_;
     double shadow_softness_m_ = 1.0;
     bool shadowed_ = false;                ///< land's shadow lies on some of the water

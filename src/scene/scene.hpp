@@ -33,6 +33,21 @@ struct GroundLook {
 /// to the Alps, Fuji, the Cascades and Scandinavia. For the look only.
 GroundLook ground_look(double lat_deg);
 
+/// Bed of a lake whose level was moved down: nothing has grown there.
+struct ExposedBed {
+    double level_m = 0.0;     ///< that the lake had
+    Grid<std::uint8_t> share; ///< 255 where it is, 0 elsewhere; a value a node
+};
+
+/// Lines laid over ground and bed.
+struct Drape {
+    int cols = 0, rows = 0;
+    double west_m = 0.0, north_m = 0.0; ///< corner of the first texel
+    double texel_m = 1.0;
+    double reach_m = 1.0;               ///< nearness falls to 0 over this
+    std::vector<std::uint8_t> nearness; ///< 255 on a line
+};
+
 struct Scene {
     geo::Frame frame;
     Heightfield ground, water;     ///< same size, spacing and place
@@ -43,6 +58,8 @@ struct Scene {
     std::vector<NamedCamera> cameras;
     std::optional<Ortho> ortho;
     ImportReport report;
+    std::optional<ExposedBed> exposed_bed;
+    std::optional<Drape> drape;
     /// Of the ground, a value for each cell (core/safety_radius.hpp); made when needed if it is not
     /// here.
     std::optional<Grid<std::uint8_t>> safety_radii;

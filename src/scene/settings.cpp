@@ -31,6 +31,12 @@ void RenderSettings::validate() const {
         require_range("intersection setting", walk_setting, 1.0, 65536.0);
     if (ground_albedo)
         require_range("ground albedo", *ground_albedo, 0.0, 1.0);
+    if (contours_m)
+        require_range("interval of the contours", *contours_m, 0.01, 1e4);
+    if (depth_contours_m)
+        require_range("interval of the depth contours", *depth_contours_m, 0.01, 1e4);
+    if (depth_colours_m)
+        require_range("depth of the darkest colour", *depth_colours_m, 0.01, 1e5);
 }
 
 const std::vector<WalkMethod>& walk_methods() {

@@ -76,6 +76,11 @@ struct RenderSettings {
                          ///< side looks for shafts of light, [0, 256]; 0: none
     double least_transmittance = 0.002;  ///< underwater paths end where less is left, [1e-6, .5]
     std::optional<double> ground_albedo; ///< lab: one grey for all ground, [0, 1]
+    // What maps draw; nothing costs nothing. The reference leaves it out.
+    std::optional<double> contours_m;       ///< interval on land, heights of the datum, [.01, 1e4]
+    std::optional<double> depth_contours_m; ///< interval on beds, depths, [.01, 1e4]
+    std::optional<double> depth_colours_m;  ///< water is a sheet in the colours of its depth, the
+                                            ///< darkest at this one, [.01, 1e5]
     Walk walk = Walk::cone_map;
     double walk_setting = 0.0; ///< 0: the method's default; else [1, 65536]
 

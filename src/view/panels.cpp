@@ -294,6 +294,40 @@ void camera_panel(Session& session, PanelState& state) {
         session.flight.redo();
 }
 
+/// A length that may be left out: a box and a field.
+bool optional_length(Session& session, const char* label, const char* option, float usual) {
+    bool on = !session.option(option).empty();
+    bool changed = false;
+    if (ImGui::Checkbox(label, &on))
+        changed |= session.set(option, on ? text(usual) : "");
+    if (on) {
+        ImGui::SameLine(0.45f * ImGui::GetWindowWidth());
+        ImGui::SetNextItemWidth(-1.0f);
+        auto value = static_cast<float>(session.number(option, usual));
+        if (ImGui::DragFloat((std::string("##") + option).c_str(), &value, 0.02f * value, 0.05f,
+                             5000.0f, "%.4g m") &&
+            value > 0.01f)
+            changed |= session.set(option, text(value));
+    }
+    return changed;
+}
+
+bool map_panel(Session& session) {
+    const LakeRecord& lake = session.scene.lakes.front();
+    const auto depth = static_cast<float>(lake.max_depth_m.value_or(50.0));
+    const auto round_125 = [](float v) {
+        const float decade = std::pow(10.0f, std::floor(std::log10(v)));
+        return decade * (v / decade >= 5 ? 5.0f : v / decade >= 2 ? 2.0f : 1.0f);
+    };
+    bool changed = optional_length(
+        session, "contours", "contours",
+        round_125(float(session.scene.ground.max_elevation_m() - lake.level_m) / 20.0f + 0.1f));
+    changed |= optional_length(session, "depth contours", "depth-contours",
+                               round_125(depth / 10.0f + 0.05f));
+    changed |= optional_length(session, "depth colours", "depth-colours", std::ceil(depth));
+    return changed;
+}
+
 void measure_panel(Session& session, PanelState& state) {
     int kind = int(session.measuring);
     ImGui::RadioButton("off", &kind, 0);
@@ -323,7 +357,7 @@ void measure_panel(Session& session, PanelState& state) {
         ImGui::BulletText("%s", session.layers[i].name.c_str());
         ImGui::SameLine();
         if (ImGui::SmallButton(text("remove##", i).c_str())) {
-            session.layers.erase(session.layers.begin() + std::ptrdiff_t(i));
+            session.remove_layer(i);
             break;
         }
     }
@@ -449,6 +483,32 @@ void draw_measured(Session& session, ImVec2 size) {
     }
 }
 
+void draw_labels(Session& session, const Screen& screen, ImVec2 size) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const scene::Camera camera = camera_of(session.flight.pose());
+    int asked = 0;
+    for (const Layer& layer : session.layers)
+        for (const Layer::Point& point : layer.points) {
+            if (point.label.empty() || ++asked > 200) // each asks the GPU
+                continue;
+            const double level =
+                session.scene.water_level_m(point.place.x, point.place.y).value_or(-1e9);
+            const glm::dvec3 place(point.place, std::max(level, session.scene.ground.elevation_m(
+                                                                    point.place.x, point.place.y)));
+            const auto at = on_screen(camera, place, size);
+            if (!at || at->x < 0 || at->y < 0 || at->x >= size.x || at->y >= size.y)
+                continue;
+            const double distance = glm::length(place - camera.position);
+            const double met = std::abs(double(screen.distance_at(at->x / size.x, at->y / size.y)));
+            if (met < 0.97 * distance)
+                continue; // behind something
+            list.AddText({at->x + 6, at->y - ImGui::GetFontSize()}, IM_COL32(0, 0, 0, 200),
+                         point.label.c_str());
+            list.AddText({at->x + 5, at->y - ImGui::GetFontSize() - 1},
+                         IM_COL32(255, 255, 255, 255), point.label.c_str());
+        }
+}
+
 void draw_messages(Session& session, ImVec2 size, float scale) {
     float y = size.y - 70 * scale;
     for (auto m = session.messages.rbegin(); m != session.messages.rend(); ++m) {
@@ -485,6 +545,7 @@ void draw_help(bool& open) {
                                         {"F1", "these keys"},
                                         {"F12", "save a picture"},
                                         {"Ctrl C", "copy as command"},
+                                        {"Ctrl Q", "close"},
                                         {"Esc", "leave off measuring"}};
         if (ImGui::BeginTable("keys", 2)) {
             for (const auto& row : keys) {
@@ -531,12 +592,22 @@ Requests draw_panels(Session& session, const Screen& screen, PanelState& state, 
             camera_panel(session, state);
         if (section("Measure, layers", false))
             measure_panel(session, state);
+        if (section("Map", false))
+            asked.view_changed |= map_panel(session);
         if (section("Effects and methods", false))
             asked.view_changed |= effects_panel(session, state, asked);
         if (section("Exposure", false))
             asked.view_changed |= exposure_panel(session, screen);
         if (section("Picture", false))
             picture_panel(session, state, asked);
+        if (section("Another scene", false)) {
+            ImGui::SetNextItemWidth(-70 * scale);
+            ImGui::InputTextWithHint("##open", "scene folder or DEM", state.open,
+                                     sizeof state.open);
+            ImGui::SameLine();
+            if (ImGui::Button("open"))
+                asked.open = state.open;
+        }
         ImGui::Separator();
         ImGui::TextDisabled("%s", state.device.c_str());
         ImGui::TextDisabled("%.0f/s, %.0f %% of the pixels, %d samples", state.frames_per_s,
@@ -548,15 +619,18 @@ Requests draw_panels(Session& session, const Screen& screen, PanelState& state, 
     return asked;
 }
 
-void draw_overlay(Session& session, PanelState& state, float scale) {
+void draw_overlay(Session& session, const Screen& screen, PanelState& state, float scale) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
+    draw_labels(session, screen, size);
     draw_north(session, {size.x - 44 * scale, 70 * scale}, 18 * scale);
     draw_scale(state, session, size, scale);
     draw_gauge(session, size, scale);
     draw_measured(session, size);
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     list.AddRectFilled({0, size.y - 26 * scale}, size, IM_COL32(0, 0, 0, 150));
-    const std::string words = state.pointer ? describe(*state.pointer) : std::string("sky");
+    const std::string words = state.pointer         ? describe(*state.pointer)
+                              : state.pointer_known ? std::string("sky")
+                                                    : std::string("...");
     list.AddText({10 * scale, size.y - 22 * scale}, IM_COL32(255, 255, 255, 255), words.c_str());
     draw_messages(session, size, scale);
     if (state.help)

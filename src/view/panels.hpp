@@ -13,7 +13,7 @@ struct Requests {
     bool view_changed = false; ///< options, hence the picture
     bool save_picture = false;
     bool time_passes = false;
-    bool close = false;
+    std::string open; ///< a scene folder or DEM to show next
 };
 
 /// Size of the saved picture and what else the panels keep between frames.
@@ -22,9 +22,10 @@ struct PanelState {
     double frames_per_s = 0.0;
     std::string device;
     int picture_width_px = 1920, picture_height_px = 1080, picture_samples = 16;
-    char bookmark[64] = "", layer[512] = "";
+    char bookmark[64] = "", layer[512] = "", open[512] = "";
     std::vector<std::pair<std::string, double>> pass_ms;
     std::optional<Reading> pointer;
+    bool pointer_known = false; ///< else nothing has been drawn there yet
     bool level_dragged = false;
 };
 
@@ -32,7 +33,7 @@ struct PanelState {
 Requests draw_panels(Session& session, const Screen& screen, PanelState& state, float scale);
 
 /// North arrow, scale bar, depth gauge, measured lines, layers, pointer, messages, keys.
-void draw_overlay(Session& session, PanelState& state, float scale);
+void draw_overlay(Session& session, const Screen& screen, PanelState& state, float scale);
 
 /// One colour scheme and sizes for all.
 void set_style(float scale);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace tarn::view {
 
@@ -130,6 +131,8 @@ float Screen::distance_at(double x, double y) const {
     const gpu::Texture2D& d = renderer_.distance();
     if (d.id() == 0 || !(x >= 0.0 && x < 1.0 && y >= 0.0 && y < 1.0))
         return 1e9f;
+    if (fine_ && sample_ == 0 && int(y * d.height_px()) >= next_row_)
+        return std::numeric_limits<float>::quiet_NaN();
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     float out = 1e9f;
     glGetTextureSubImage(d.id(), 0, int(x * d.width_px()), int(y * d.height_px()), 0, 1, 1, 1,

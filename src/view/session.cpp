@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/text.hpp"
+#include "scene/drape.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -15,6 +16,13 @@ Session::Session(scene::Scene& s, const Services& v, Options options)
       options_(std::move(options)), usual_optics_(s.optics) {
     options_.erase("camera"); // from here on it is flight's
     level_m_ = scene.lakes.front().level_m;
+    const std::string paths = option("layers");
+    for (std::size_t from = 0; from < paths.size();) {
+        const std::size_t end = std::min(paths.find(':', from), paths.size());
+        if (end > from)
+            add_layer(paths.substr(from, end - from));
+        from = end + 1;
+    }
 }
 
 void Session::open_levels() {
@@ -163,11 +171,42 @@ void Session::go_to(const std::string& name) {
 void Session::add_layer(const std::string& path) {
     try {
         layers.push_back(services.read_layer(path));
+        layer_paths_.push_back(path);
+        drape_layers();
         say(text("layer ", layers.back().name, ": ", layers.back().lines.size(), " lines, ",
                  layers.back().points.size(), " points"));
     } catch (const std::exception& error) {
         complain(error.what());
     }
+}
+
+void Session::remove_layer(std::size_t index) {
+    layers.erase(layers.begin() + std::ptrdiff_t(index));
+    layer_paths_.erase(layer_paths_.begin() + std::ptrdiff_t(index));
+    drape_layers();
+}
+
+void Session::drape_layers() {
+    std::vector<std::vector<glm::dvec2>> lines;
+    std::vector<glm::dvec2> points;
+    std::string paths;
+    for (const Layer& layer : layers) {
+        lines.insert(lines.end(), layer.lines.begin(), layer.lines.end());
+        for (const Layer::Point& point : layer.points)
+            points.push_back(point.place);
+    }
+    for (const std::string& path : layer_paths_)
+        paths += (paths.empty() ? "" : ":") + path;
+    scene.drape.reset();
+    if (!lines.empty() || !points.empty())
+        scene.drape = scene::make_drape(scene.ground, lines, points);
+    if (!layers.empty() && !scene.drape)
+        complain("nothing of the layers lies on the scene");
+    if (paths.empty())
+        options_.erase("layers");
+    else
+        options_["layers"] = paths;
+    map_changed_ = true;
 }
 
 std::optional<SolarTime> parse_solar(const std::string& time) {

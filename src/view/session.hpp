@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace tarn::view {
 
@@ -86,6 +87,9 @@ public:
 
     std::vector<Layer> layers;
     void add_layer(const std::string& path);
+    void remove_layer(std::size_t index);
+    /// What is draped is not what the renderer has. Ask once.
+    bool take_map_changed() { return std::exchange(map_changed_, false); }
 
     /// Sun and waves that go on by themselves.
     bool play_sun = false, play_waves = false;
@@ -93,6 +97,7 @@ public:
 
 private:
     void keep_bookmarks();
+    void drape_layers();
 
     Options options_;
     scene::WaterOptics usual_optics_;
@@ -101,8 +106,9 @@ private:
     double level_m_ = 0.0, last_fill_ms_ = 0.0;
     std::optional<Figures> figures_;
     std::vector<Figures> curve_;
-    bool scene_changed_ = false;
+    bool scene_changed_ = false, map_changed_ = false;
     std::size_t said_ = 0;
+    std::vector<std::string> layer_paths_;
 };
 
 /// "2026-06-21T09:30" to day of the year [1, 366] and hour, and back; for sliders in solar time.

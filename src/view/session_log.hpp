@@ -1,5 +1,6 @@
 #pragma once
-/// @file session_log.hpp  What went on in a window, a JSON object a line: for tests and for figures.
+/// @file session_log.hpp  What went on in a window, a JSON object a line: for tests and for
+/// figures.
 #include "core/text.hpp"
 
 #include <algorithm>

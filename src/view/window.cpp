@@ -177,6 +177,8 @@ public:
           started_s_(std::chrono::duration<double>(settings.started.time_since_epoch()).count()) {
         state_.device = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
         session_.play_waves = !gpu::is_software();
+        if (!settings.message.empty())
+            session_.complain(settings.message);
         if (gpu::is_software())
             state_.picture_samples = 4;
         last_s_ = now_s();
@@ -259,7 +261,7 @@ scene::View App::view_now() {
 
 std::optional<glm::dvec3> App::point_at(double x, double y) const {
     const float distance = screen_.distance_at(x, y);
-    if (std::abs(distance) >= 0.99e9f || distance == 0.0f)
+    if (!(std::abs(distance) < 0.99e9f) || distance == 0.0f)
         return std::nullopt;
     int w = 1, h = 1;
     glfwGetFramebufferSize(window_.get(), &w, &h);
@@ -284,6 +286,8 @@ void App::keys(double seconds) {
             save_asked_ = true;
         if (pressed(GLFW_KEY_TAB))
             state_.shown = !state_.shown;
+        if (control && pressed(GLFW_KEY_Q))
+            glfwSetWindowShouldClose(window_.get(), GLFW_TRUE);
         if (control && pressed(GLFW_KEY_Z) && session_.flight.undo())
             changed_ = true;
         if (control && pressed(GLFW_KEY_Y) && session_.flight.redo())
@@ -396,10 +400,12 @@ void App::read_pointer() {
     glfwGetFramebufferSize(window_.get(), &w, &h);
     if (!(pointer_x_ >= 0.0 && pointer_x_ < 1.0 && pointer_y_ >= 0.0 && pointer_y_ < 1.0))
         return;
+    const float distance = screen_.distance_at(pointer_x_, pointer_y_);
+    state_.pointer_known = !std::isnan(distance);
     state_.pointer = read_place(session_.scene, session_.flight.pose().position,
                                 scene::pixel_direction(camera_of(session_.flight.pose()),
                                                        pointer_x_ * w, pointer_y_ * h, w, h),
-                                double(screen_.distance_at(pointer_x_, pointer_y_)));
+                                double(distance));
 }
 
 // Only that something goes on, and how far it is; Escape stops it.
@@ -516,8 +522,7 @@ void App::log_frame(double began_s, bool drawn) {
                     {"z", p.position.z},
                     {"heading_deg", p.heading_deg},
                     {"pitch_deg", p.pitch_deg},
-                    {"ground_m",
-                     session_.scene.ground.elevation_m(p.position.x, p.position.y)},
+                    {"ground_m", session_.scene.ground.elevation_m(p.position.x, p.position.y)},
                     {"under_water", water && p.position.z < *water ? 1.0 : 0.0}});
     }
     for (; messages_logged_ < session_.messages_said(); ++messages_logged_)
@@ -555,6 +560,14 @@ void App::frame() {
     const Requests asked = draw_panels(session_, screen_, state_, scale_);
     changed_ |= asked.view_changed;
     save_asked_ |= asked.save_picture;
+    if (!asked.open.empty()) {
+        if (std::filesystem::exists(asked.open)) {
+            next_ = asked.open;
+            glfwSetWindowShouldClose(window_.get(), GLFW_TRUE);
+        } else {
+            session_.complain(asked.open + ": no such scene or file");
+        }
+    }
     if (session_.take_scene_changed()) {
         const double before = now_s();
         renderer_.scene_changed(!state_.level_dragged);
@@ -562,6 +575,10 @@ void App::frame() {
         log_.write(now - started_s_, "upload", {{"ms", 1e3 * (now_s() - before)}});
         changed_ = true;
         level_s_ = now;
+    }
+    if (session_.take_map_changed()) {
+        renderer_.map_changed();
+        changed_ = true;
     }
     if (state_.level_dragged)
         moving_ = true;
@@ -600,7 +617,7 @@ void App::frame() {
     idle_frames_ = settled && !ImGui::IsAnyItemActive() ? idle_frames_ + 1 : 0;
 
     ImGui::GetBackgroundDrawList()->AddImage(screen_image(), {0, 0}, ImGui::GetIO().DisplaySize);
-    draw_overlay(session_, state_, scale_);
+    draw_overlay(session_, screen_, state_, scale_);
     show();
     log_frame(now, drawn);
     was_moving_ = moving_;

@@ -12,7 +12,8 @@ namespace tarn::view {
 struct WindowSettings {
     int width_px = 1280, height_px = 720; ///< at first
     std::string title = "tarn";
-    std::string log;  ///< file for what goes on (session_log.hpp); empty: none
+    std::string message; ///< shown at first
+    std::string log;     ///< file for what goes on (session_log.hpp); empty: none
     std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
     bool egl = false; ///< ask GLFW for an EGL context instead of the platform's own
 };
