@@ -113,8 +113,11 @@ int run_import(Words& words) {
 
 } // namespace
 
-void import_for_viewing(const std::string& dem, const std::string& scene) {
+void import_for_viewing(const std::string& dem, const std::string& scene,
+                        std::optional<double> level_m) {
     Words words;
+    if (level_m)
+        words.level = text(*level_m);
     words.dem.dems = {dem};
     words.scene = scene;
     run_import(words);

@@ -152,14 +152,14 @@ view::Services services_for(const std::string& folder, const scene::Scene& as_im
 /// A DEM is imported beside, to a folder that goes with the program.
 class TemporaryScene {
 public:
-    explicit TemporaryScene(const std::string& dem) {
+    TemporaryScene(const std::string& dem, std::optional<double> level_m) {
         std::string name = (fs::temp_directory_path() / "tarn-view-XXXXXX").string();
         if (!::mkdtemp(name.data()))
             throw Error(fs::temp_directory_path().string() + ": no folder can be made there",
                         "set TMPDIR to a place with some space");
         folder_ = name;
         try {
-            import_for_viewing(dem, (folder_ / "scene").string());
+            import_for_viewing(dem, (folder_ / "scene").string(), level_m);
         } catch (...) {
             std::error_code ignored;
             fs::remove_all(folder_, ignored);
@@ -189,7 +189,7 @@ int run_view(const Words& words, view::Options options) {
         scene::Scene scene;
         try {
             if (!fs::is_directory(folder)) {
-                temporary.emplace(folder);
+                temporary.emplace(folder, first ? words.view.level_m : std::nullopt);
                 folder = temporary->path();
             }
             scene = scene_files::load(folder);
@@ -206,7 +206,7 @@ int run_view(const Words& words, view::Options options) {
             scene = scene_files::load(folder);
         }
         const scene::Scene as_imported = scene;
-        if (const auto level = words.view.level_m; level && first) {
+        if (const auto level = words.view.level_m; level && first && !temporary) {
             dem::Refill refill = make_refill(folder, scene, words.view.lake, console_progress());
             move_level(refill, *level, scene, true);
             end_progress();

@@ -2,6 +2,7 @@
 /// @file command.hpp  A subcommand adds itself to the command line and says what to run.
 #include <CLI/App.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace tarn::app {
@@ -22,8 +23,10 @@ void add_bench(CLI::App& app, Run& run);
 void add_doctor(CLI::App& app, Run& run);
 
 /// A DEM with everything as the defaults of `tarn import` have it.
+/// @param level_m  nothing: the water surface that is found
 /// @throws tarn::Error
-void import_for_viewing(const std::string& dem, const std::string& scene);
+void import_for_viewing(const std::string& dem, const std::string& scene,
+                        std::optional<double> level_m);
 
 /// The command line as typed, for provenance.
 const std::string& command_line();

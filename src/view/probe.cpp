@@ -40,6 +40,40 @@ std::optional<glm::dvec3> first_ground(const scene::Scene& scene, const glm::dve
     return std::nullopt;
 }
 
+std::optional<glm::dvec3> first_met(const scene::Scene& scene, const glm::dvec3& eye,
+                                    const glm::dvec3& direction) {
+    const Heightfield& g = scene.ground;
+    const glm::dvec3 d = glm::normalize(direction);
+    // Where the ray is over the field and not above all of it.
+    double from = 0.0, to = 1e9;
+    const glm::dvec3 low(g.west_m, g.south_m(), g.min_elevation_m() - 1.0),
+        high(g.east_m(), g.north_m, g.max_elevation_m() + 1.0);
+    for (int k = 0; k < 3; ++k) {
+        if (d[k] == 0.0) {
+            if (eye[k] < low[k] || eye[k] > high[k])
+                return std::nullopt;
+            continue;
+        }
+        const double a = (low[k] - eye[k]) / d[k], b = (high[k] - eye[k]) / d[k];
+        from = std::max(from, std::min(a, b));
+        to = std::min(to, std::max(a, b));
+    }
+    if (from >= to)
+        return std::nullopt;
+    std::optional<glm::dvec3> met = first_ground(scene, eye + d * from, d, to - from);
+    double nearest = met ? glm::length(*met - eye) : 1e9;
+    for (const LakeRecord& lake : scene.lakes) {
+        const double t = d.z == 0.0 ? -1.0 : (lake.level_m - eye.z) / d.z;
+        const glm::dvec3 p = eye + d * t;
+        const auto water = t > 0.0 && t < nearest ? scene.water_level_m(p.x, p.y) : std::nullopt;
+        if (water && std::abs(*water - lake.level_m) < 0.01) {
+            met = p;
+            nearest = t;
+        }
+    }
+    return met;
+}
+
 std::optional<Reading> read_place(const scene::Scene& scene, const glm::dvec3& eye,
                                   const glm::dvec3& direction, double distance) {
     if (!std::isfinite(distance) || distance == 0.0 || std::abs(distance) >= 0.99e9)

@@ -37,6 +37,10 @@ std::optional<Reading> read_place(const scene::Scene& scene, const glm::dvec3& e
 std::optional<glm::dvec3> first_ground(const scene::Scene& scene, const glm::dvec3& origin,
                                        const glm::dvec3& direction, double most_m);
 
+/// The same from anywhere, water stopping it, too.
+std::optional<glm::dvec3> first_met(const scene::Scene& scene, const glm::dvec3& eye,
+                                    const glm::dvec3& direction);
+
 /// In one line: "-38.05123, 176.58231   ground 271.32 m   depth 41.99 m   slope 3.2 deg ...".
 std::string describe(const Reading& reading);
 

@@ -199,9 +199,9 @@ private:
         glfwSetDropCallback(window_.get(), [](GLFWwindow* w, int count, const char** paths) {
             static_cast<App*>(glfwGetWindowUserPointer(w))->dropped(count, paths);
         });
-        glfwSetKeyCallback(window_.get(), [](GLFWwindow* w, int key, int, int action, int) {
+        glfwSetKeyCallback(window_.get(), [](GLFWwindow* w, int key, int, int action, int mods) {
             if (action == GLFW_PRESS)
-                static_cast<App*>(glfwGetWindowUserPointer(w))->pressed_.push_back(key);
+                static_cast<App*>(glfwGetWindowUserPointer(w))->pressed_.push_back({key, mods});
         });
         return true;
     }
@@ -224,7 +224,10 @@ private:
     std::optional<glm::dvec3> point_at(double x, double y) const;
 
     GlfwWindow window_;
-    std::vector<int> pressed_; ///< keys since the last frame, however short
+    struct KeyPress {
+        int key, mods; ///< as GLFW has them
+    };
+    std::vector<KeyPress> pressed_; ///< since the last frame, however short
     float scale_;
     bool callbacks_;
     Gui gui_;
@@ -260,22 +263,33 @@ scene::View App::view_now() {
 }
 
 std::optional<glm::dvec3> App::point_at(double x, double y) const {
-    const float distance = screen_.distance_at(x, y);
-    if (!(std::abs(distance) < 0.99e9f) || distance == 0.0f)
-        return std::nullopt;
     int w = 1, h = 1;
     glfwGetFramebufferSize(window_.get(), &w, &h);
+    const glm::dvec3 eye = session_.flight.pose().position;
     const glm::dvec3 d = glm::normalize(
         scene::pixel_direction(camera_of(session_.flight.pose()), x * w, y * h, w, h));
-    return session_.flight.pose().position + d * double(std::abs(distance));
+    const float distance = screen_.distance_at(x, y);
+    if (std::isnan(distance)) // not drawn yet: without the GPU
+        return first_met(session_.scene, eye, d);
+    if (!(std::abs(distance) < 0.99e9f) || distance == 0.0f)
+        return std::nullopt;
+    return eye + d * double(std::abs(distance));
 }
 
 void App::keys(double seconds) {
     const ImGuiIO& io = ImGui::GetIO();
     GLFWwindow* w = window_.get();
     const auto down = [w](int key) { return glfwGetKey(w, key) == GLFW_PRESS; };
-    const auto pressed = [this](int key) {
-        return std::find(pressed_.begin(), pressed_.end(), key) != pressed_.end();
+    // Alone, or with Shift, which some keys take for more.
+    const auto pressed = [this](int key, int mods = 0) {
+        return std::any_of(pressed_.begin(), pressed_.end(), [&](const KeyPress& p) {
+            return p.key == key && (p.mods & GLFW_MOD_CONTROL) == (mods & GLFW_MOD_CONTROL);
+        });
+    };
+    const auto shifted = [this](int key) {
+        return std::any_of(pressed_.begin(), pressed_.end(), [&](const KeyPress& p) {
+            return p.key == key && (p.mods & GLFW_MOD_SHIFT) != 0;
+        });
     };
     Push push;
     if (!io.WantTextInput) {
@@ -286,13 +300,13 @@ void App::keys(double seconds) {
             save_asked_ = true;
         if (pressed(GLFW_KEY_TAB))
             state_.shown = !state_.shown;
-        if (control && pressed(GLFW_KEY_Q))
+        if (pressed(GLFW_KEY_Q, GLFW_MOD_CONTROL))
             glfwSetWindowShouldClose(window_.get(), GLFW_TRUE);
-        if (control && pressed(GLFW_KEY_Z) && session_.flight.undo())
+        if (pressed(GLFW_KEY_Z, GLFW_MOD_CONTROL) && session_.flight.undo())
             changed_ = true;
-        if (control && pressed(GLFW_KEY_Y) && session_.flight.redo())
+        if (pressed(GLFW_KEY_Y, GLFW_MOD_CONTROL) && session_.flight.redo())
             changed_ = true;
-        if (control && pressed(GLFW_KEY_C)) {
+        if (pressed(GLFW_KEY_C, GLFW_MOD_CONTROL)) {
             ImGui::SetClipboardText(session_.services.command(session_.all_options()).c_str());
             session_.say("the command that makes this picture is on the clipboard");
         }
@@ -307,11 +321,10 @@ void App::keys(double seconds) {
         for (int k = 0; k < 9; ++k)
             if (pressed(GLFW_KEY_1 + k) && std::size_t(k) < session_.scene.cameras.size())
                 session_.go_to(session_.scene.cameras[std::size_t(k)].name);
-        const double step = io.KeyShift ? 1.0 : 0.1;
-        if (pressed(GLFW_KEY_LEFT_BRACKET))
-            session_.set_level(session_.level_m() - step, true);
-        if (pressed(GLFW_KEY_RIGHT_BRACKET))
-            session_.set_level(session_.level_m() + step, true);
+        for (const auto& [key, sign] :
+             {std::pair(GLFW_KEY_LEFT_BRACKET, -1.0), std::pair(GLFW_KEY_RIGHT_BRACKET, 1.0)})
+            if (pressed(key))
+                session_.set_level(session_.level_m() + sign * (shifted(key) ? 1.0 : 0.1), true);
         if (!control || !(down(GLFW_KEY_Z) || down(GLFW_KEY_Y) || down(GLFW_KEY_C))) {
             push.forward = double(down(GLFW_KEY_W) || down(GLFW_KEY_UP)) -
                            double(down(GLFW_KEY_S) || down(GLFW_KEY_DOWN));
@@ -364,6 +377,7 @@ void App::mouse(double) {
                 session_.measured.push_back(*pivot_);
             pivot_.reset();
         } else {
+            turning_ = !pivot_; // there is nothing to go round in the sky
             session_.flight.remember();
         }
     }
@@ -373,7 +387,7 @@ void App::mouse(double) {
     }
     if (!ImGui::IsMouseDown(0))
         pivot_.reset();
-    if (!ImGui::IsMouseDown(1))
+    if (!ImGui::IsMouseDown(0) && !ImGui::IsMouseDown(1))
         turning_ = false;
     const double dx = io.MouseDelta.x, dy = io.MouseDelta.y;
     const bool dragged = dx != 0.0 || dy != 0.0;
@@ -411,9 +425,9 @@ void App::read_pointer() {
 // Only that something goes on, and how far it is; Escape stops it.
 bool App::show_progress(const std::string& what, double share) {
     glfwPollEvents();
-    const bool stop =
-        std::find(pressed_.begin(), pressed_.end(), GLFW_KEY_ESCAPE) != pressed_.end() ||
-        glfwWindowShouldClose(window_.get());
+    const bool stop = std::any_of(pressed_.begin(), pressed_.end(),
+                                  [](const KeyPress& p) { return p.key == GLFW_KEY_ESCAPE; }) ||
+                      glfwWindowShouldClose(window_.get());
     pressed_.clear();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();

@@ -92,7 +92,7 @@ inline bool has_desk() {
 /// One screen with one window of `tarn view` on it.
 class Desk {
 public:
-    static constexpr int width_px = 1000, height_px = 700;
+    static constexpr int width_px = 1000, height_px = 860;
 
     Desk() {
         const std::string number = (folder_ / "display").string();

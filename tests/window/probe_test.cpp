@@ -102,4 +102,13 @@ TEST(Probe, FirstGroundIsTheBilinearOne) {
         EXPECT_NEAR(glm::length(*hit - eye), t, 0.01 * t);
     }
     EXPECT_FALSE(view::first_ground(bowl, eye, {0, 0, 1}, 1000.0));
+    // From outside and above, water stops it.
+    const glm::dvec3 outside(-900, 0, 410);
+    const auto water = view::first_met(bowl, outside, glm::dvec3(0, 0, 10) - outside);
+    ASSERT_TRUE(water);
+    EXPECT_NEAR(glm::length(*water - glm::dvec3(0, 0, 10)), 0.0, 1e-6);
+    EXPECT_FALSE(view::first_met(bowl, outside, {-1, 0, -0.1}));
+    const auto land = view::first_met(bowl, outside, glm::dvec3(-400, 0, 25.6) - outside);
+    ASSERT_TRUE(land);
+    EXPECT_NEAR(land->x, -400.0, 1.0);
 }
