@@ -108,6 +108,15 @@ view::Services services_for(const std::string& folder, const scene::Scene& as_im
     out.command = [folder](const view::Options& options) {
         return command_of("render", folder, list_of(options)) + " -o picture.png";
     };
+    out.record_command = [folder](const view::Options& options) {
+        view::Options own = options;
+        own.erase("camera");
+        std::string path;
+        for (const scene::NamedCamera& c : scene_files::load_cameras(folder))
+            path += (path.empty() ? "" : "/") + c.name;
+        own["path"] = path;
+        return command_of("record", folder, list_of(own)) + " -o frames";
+    };
     out.open_levels = [folder, lake = words.view.lake,
                        scene = std::make_shared<const scene::Scene>(as_imported)] {
         return std::unique_ptr<view::LevelControl>(std::make_unique<RefilledLevels>(

@@ -18,6 +18,7 @@ void add_stats(CLI::App& app, Run& run);
 void add_waves(CLI::App& app, Run& run);
 void add_render(CLI::App& app, Run& run);
 void add_view(CLI::App& app, Run& run);
+void add_record(CLI::App& app, Run& run);
 void add_sweep(CLI::App& app, Run& run);
 void add_bench(CLI::App& app, Run& run);
 void add_doctor(CLI::App& app, Run& run);

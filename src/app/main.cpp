@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
     app::add_view(cli, run);
     app::add_render(cli, run);
     app::add_sweep(cli, run);
+    app::add_record(cli, run);
     app::add_bench(cli, run);
     app::add_doctor(cli, run);
     try {

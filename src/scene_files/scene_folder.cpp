@@ -189,6 +189,11 @@ void replace_cameras(const fs::path& folder, const std::vector<scene::NamedCamer
     fs::rename(part, folder / "scene.json");
 }
 
+std::vector<scene::NamedCamera> load_cameras(const fs::path& folder) {
+    FileNames files;
+    return from_json(scene_text(folder), files).cameras;
+}
+
 std::string identity(const fs::path& folder) { return with_cameras(scene_text(folder), {}); }
 
 StagedFolder::StagedFolder(const fs::path& target) : target_(target.lexically_normal()) {

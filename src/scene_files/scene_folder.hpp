@@ -27,6 +27,10 @@ std::optional<Grid<std::uint8_t>> load_safety_radii(const std::filesystem::path&
 void replace_cameras(const std::filesystem::path& folder,
                      const std::vector<scene::NamedCamera>& cameras);
 
+/// The cameras that the folder keeps now.
+/// @throws as load()
+std::vector<scene::NamedCamera> load_cameras(const std::filesystem::path& folder);
+
 /// Text that differs between scenes, whatever cameras they keep.
 /// @throws tarn::Error  if scene.json cannot be read
 std::string identity(const std::filesystem::path& folder);

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 namespace tarn::scene_files {
@@ -38,6 +39,12 @@ OptionList read_sidecar(const std::filesystem::path& path) {
         out.emplace_back(name, value.get<std::string>());
     }
     return out;
+}
+
+bool same_text(const std::filesystem::path& path, const std::string& text) {
+    std::ifstream in(path, std::ios::binary);
+    const std::string found{std::istreambuf_iterator<char>(in), {}};
+    return found == text;
 }
 
 bool sidecar_says(const std::filesystem::path& path, const std::string& name,

@@ -20,6 +20,9 @@ std::string sidecar_json(const std::string& picture, const std::string& scene,
 /// @throws tarn::Error  naming the file, if it is none
 OptionList read_sidecar(const std::filesystem::path& path);
 
+/// Does the file hold just this?
+bool same_text(const std::filesystem::path& path, const std::string& text);
+
 /// Does the sidecar say `value` of `name`, among "about"? No if it is none.
 bool sidecar_says(const std::filesystem::path& path, const std::string& name,
                   const std::string& value);

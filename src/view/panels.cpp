@@ -287,6 +287,15 @@ void camera_panel(Session& session, PanelState& state) {
         pose.fov_deg = fov;
         session.flight.jump(pose);
     }
+    if (ImGui::Button("copy as recording")) {
+        try {
+            ImGui::SetClipboardText(session.services.record_command(session.all_options()).c_str());
+            session.say("a command that records a way through all cameras is on the clipboard");
+        } catch (const std::exception& error) {
+            session.complain(error.what());
+        }
+    }
+    ImGui::SameLine();
     if (ImGui::Button("undo"))
         session.flight.undo();
     ImGui::SameLine();

@@ -54,6 +54,8 @@ struct Services {
     std::function<scene::View(const Options&, scene::Scene&)> make_view;
     /// The command that makes the same picture.
     std::function<std::string(const Options&)> command;
+    /// The command that records a way through all cameras of the scene.
+    std::function<std::string(const Options&)> record_command;
     /// Slow: call it on a thread of its own. May throw.
     std::function<std::unique_ptr<LevelControl>()> open_levels;
     /// Keeps cameras in the scene folder. @throws tarn::Error

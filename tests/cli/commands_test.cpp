@@ -973,3 +973,22 @@ TEST(Layers, AreDrawnWhereTheyLie) {
                         (t / "x.png").string(),
                     1, "nothing of them lies on the scene");
 }
+
+TEST(Record, WritesPicturesOnceAndKeepsThem) {
+    const TempFolder t;
+    const std::string command = "tarn record " + shared().scene +
+                                " --path overview/shore --seconds 1 --fps 4 --wind 3" + small +
+                                "-o " + (t / "f").string();
+    const Outcome first = run(command);
+    ASSERT_EQ(first.code, 0) << first.err;
+    for (int i = 1; i <= 4; ++i)
+        EXPECT_TRUE(fs::exists(t / ("f/frame_0000" + std::to_string(i) + ".png")));
+    fs::remove(t / "f/frame_00003.png");
+    EXPECT_NE(run(command).out.find("wrote 1 of 4"), std::string::npos);
+    expect_one_line(command + " --no-shadows", 1, "holds another recording");
+    expect_one_line("tarn record " + shared().scene + small + "-o " + (t / "g").string(), 1,
+                    "--path or --track");
+    expect_one_line("tarn record " + shared().scene + " --path shore --fps 0" + small + "-o " +
+                        (t / "g").string(),
+                    1, "--fps is 0");
+}

@@ -156,3 +156,29 @@ TEST(Tone, APixelThatIsNoNumberDarkensNoOther) {
         EXPECT_GT(p->bytes[0], 50);
     }
 }
+
+TEST(Annotate, LettersLoseTheirMarksAndNothingBreaks) {
+    Picture plain{.width_px = 300, .height_px = 40, .channels = 3, .bytes = {}};
+    plain.bytes.assign(std::size_t(300 * 40 * 3), 60);
+    Picture marked = plain, broken = plain;
+    ASSERT_TRUE(image::draw_text(plain, 10, 28, 18, "Rotoma Zurich Lac d'Annecy"));
+    image::draw_text(marked, 10, 28, 18, "Rotom\xC4\x81 Z\xC3\xBCrich Lac d'Annecy");
+    EXPECT_EQ(plain.bytes, marked.bytes);
+    image::draw_text(broken, 10, 28, 18, "cut \xC4"); // half a letter
+    image::draw_text(broken, 10, 28, 18, "\xF0\x9F\x8C\x8A");
+}
+
+TEST(Annotate, ResizesAndPastes) {
+    Picture p{.width_px = 40, .height_px = 20, .channels = 3, .bytes = {}};
+    p.bytes.assign(std::size_t(40 * 20 * 3), 200);
+    const Picture small = image::resized(p, 10, 5);
+    EXPECT_EQ(small.bytes.size(), std::size_t(10 * 5 * 3));
+    for (const std::uint8_t b : small.bytes)
+        EXPECT_NEAR(b, 200, 1);
+    Picture sheet{.width_px = 20, .height_px = 20, .channels = 3, .bytes = {}};
+    sheet.bytes.assign(std::size_t(20 * 20 * 3), 0);
+    image::paste(sheet, small, 15, -2); // over two edges
+    EXPECT_NEAR(sheet.bytes[std::size_t((0 * 20 + 16) * 3)], 200, 1);
+    EXPECT_EQ(sheet.bytes[std::size_t((4 * 20 + 16) * 3)], 0);
+    EXPECT_EQ(sheet.bytes[std::size_t((0 * 20 + 14) * 3)], 0);
+}

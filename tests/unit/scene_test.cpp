@@ -1,4 +1,6 @@
 #include "core/error.hpp"
+#include "scene/camera_path.hpp"
+#include "scene/drape.hpp"
 #include "scene/environment.hpp"
 #include "scene/lighting.hpp"
 #include "scene/presets.hpp"
@@ -8,6 +10,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <random>
 
 using namespace tarn;
 using namespace tarn::scene;
@@ -167,4 +170,88 @@ TEST(Samples, TheBowlHasItsExactFigures) {
     scene.validate();
     mountain_lake(129).validate();
     tank().validate();
+}
+
+namespace {
+glm::dvec3 at(const scene::Camera& c) { return c.position; }
+} // namespace
+
+TEST(CameraPath, GoesThroughItsKeysAtAnEvenPace) {
+    const scene::Scene bowl = scene::bowl(129);
+    const std::vector<scene::Camera> keys = {
+        scene::look({-300, -300, 120}, 45, -20, 50), scene::look({0, -200, 60}, 10, -10, 60),
+        scene::look({10, -190, 58}, 0, -10, 60), scene::look({200, 100, 90}, -60, -30, 40)};
+    const auto way = scene::path_through(keys, 500, bowl.ground);
+    ASSERT_EQ(way.size(), 500u);
+    EXPECT_NEAR(glm::length(at(way.front()) - at(keys.front())), 0.0, 1e-9);
+    EXPECT_NEAR(glm::length(at(way.back()) - at(keys.back())), 0.0, 1e-9);
+    double length = 0.0, longest = 0.0;
+    for (std::size_t i = 1; i < way.size(); ++i) {
+        const double step = glm::length(at(way[i]) - at(way[i - 1]));
+        length += step;
+        longest = std::max(longest, step);
+        EXPECT_NEAR(glm::length(way[i].forward), 1.0, 1e-9);
+        EXPECT_GT(glm::dot(way[i].forward, way[i - 1].forward), 0.99) << "a jerk at " << i;
+    }
+    EXPECT_LT(longest, 2.0 * length / 499.0) << "no leaps";
+    for (const scene::Camera& key : keys) { // through all of them
+        double nearest = 1e9;
+        for (const scene::Camera& c : way)
+            nearest = std::min(nearest, glm::length(at(c) - at(key)));
+        EXPECT_LT(nearest, longest);
+    }
+    EXPECT_EQ(scene::path_through({keys[0]}, 7, bowl.ground).size(), 7u);
+    EXPECT_EQ(scene::path_through(keys, 1, bowl.ground).size(), 1u);
+}
+
+TEST(CameraPath, StaysAboveTheGround) {
+    const scene::Scene lake = scene::mountain_lake(257);
+    const Heightfield& g = lake.ground;
+    const double z = g.min_elevation_m() + 10.0;
+    const auto way = scene::path_through({scene::look({g.west_m + 100, 0, z}, 90, 0, 50),
+                                          scene::look({g.east_m() - 100, 0, z}, 90, 0, 50)},
+                                         300, g);
+    for (const scene::Camera& c : way)
+        EXPECT_GE(c.position.z, g.elevation_m(c.position.x, c.position.y) + 0.49);
+    const auto track = scene::path_along({{g.west_m + 100, -500}, {0, 700}, {g.east_m() - 100, 0}},
+                                         20.0, lake.lakes[0].level_m, 60.0, 300, g);
+    ASSERT_EQ(track.size(), 300u);
+    for (const scene::Camera& c : track) {
+        EXPECT_GE(c.position.z, g.elevation_m(c.position.x, c.position.y) + 0.49);
+        EXPECT_LT(c.forward.z, 0.0);
+    }
+    EXPECT_GT(track.front().forward.x, 0.0); // looks ahead
+}
+
+TEST(Drape, IsNearOnTheLineAndNowhereElse) {
+    const scene::Scene bowl = scene::bowl(129);
+    EXPECT_FALSE(scene::make_drape(bowl.ground, {{{9000, 0}, {9000, 100}}}, {}));
+    EXPECT_FALSE(scene::make_drape(bowl.ground, {}, {}));
+    const glm::dvec2 a(-400, -100), b(300, 200);
+    const auto drape = scene::make_drape(bowl.ground, {{a, b, {5000, 200}}}, {{0, 300}});
+    ASSERT_TRUE(drape);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> place(-490.0, 490.0);
+    for (int i = 0; i < 20'000; ++i) {
+        const int c = int((place(random) - drape->west_m) / drape->texel_m),
+                  r = int((drape->north_m - place(random)) / drape->texel_m);
+        if (c < 0 || r < 0 || c >= drape->cols || r >= drape->rows)
+            continue;
+        const glm::dvec2 p(drape->west_m + (c + 0.5) * drape->texel_m,
+                           drape->north_m - (r + 0.5) * drape->texel_m);
+        const auto away = [&](glm::dvec2 s, glm::dvec2 e) {
+            const double f = std::clamp(glm::dot(p - s, e - s) / glm::dot(e - s, e - s), 0.0, 1.0);
+            return glm::length(p - s - (e - s) * f);
+        };
+        const double ring = std::abs(glm::length(p - glm::dvec2(0, 300)) - 3.0 * drape->texel_m);
+        const double nearest = std::min(away(a, b), away(b, {5000, 200}));
+        const double expected = std::max(0.0, 1.0 - nearest / drape->reach_m);
+        const double found =
+            drape->nearness[std::size_t(r) * std::size_t(drape->cols) + std::size_t(c)] / 255.0;
+        if (ring > drape->reach_m) {
+            EXPECT_NEAR(found, expected, 0.003) << p.x << ", " << p.y;
+        } else {
+            EXPECT_GE(found, expected - 0.003);
+        }
+    }
 }
