@@ -122,10 +122,14 @@ int run_record(const Words& words, const scene_files::OptionList& options) {
     // Pictures of the same recording are kept, those of another are in the way.
     const fs::path record = fs::path(words.output) / "record.json";
     const std::string command = command_of("record", words.scene, options);
+    std::string all; // every camera counts: bookmarks and tracks may have changed
+    for (const scene::Camera& c : way)
+        all += camera_words(c);
     const std::string about = scene_files::sidecar_json(
         "frame_*.png", words.scene, options,
         {{"tarn:command", command},
          {"tarn:identity", text(std::hash<std::string>{}(scene_files::identity(words.scene)))},
+         {"tarn:way", text(std::hash<std::string>{}(all + files_mark(options)))},
          {"Software", text("tarn ", TARN_VERSION)}});
     if (fs::exists(record) && !scene_files::same_text(record, about))
         throw Error(words.output + ": holds another recording", "choose another folder with -o");
@@ -152,10 +156,18 @@ int run_record(const Words& words, const scene_files::OptionList& options) {
         const Image picture = renderer.draw(view, [&](double share) {
             progress.report(0.1 + 0.9 * (i + share) / frames, frame_name(i));
         });
+        scene_files::OptionList own; // of this picture alone
+        for (const auto& option : options)
+            if (option.first != "path" && option.first != "track" && option.first != "above" &&
+                option.first != "seconds" && option.first != "fps")
+                own.push_back(option);
+        own = with_option(own, "camera", camera_words(view.camera));
+        if (!view.waves.calm())
+            own = with_option(own, "wave-time", text(view.waves.time_s));
         write_picture(path.string(), words.picture, picture, scene, view,
                       {.scene = words.scene,
-                       .options = options,
-                       .command = command,
+                       .options = own,
+                       .command = {},
                        .device = context.renderer(),
                        .time = describe_time(words.view, scene),
                        .exposure = exposure[std::size_t(i)],

@@ -177,7 +177,7 @@ public:
         for (const scene::NamedCamera& c : scene_.cameras)
             if (c.name == plan_.cameras[job.camera].words)
                 named = &c.camera;
-        return fingerprint(identity_, named, command(job));
+        return fingerprint(identity_, named, command(job) + files_mark(common_));
     }
 
     /// Is the picture there, made from this scene with these options?
@@ -286,7 +286,7 @@ int Sweep::draw(const std::vector<Job>& jobs) {
             write_picture(file(job).string(), how, picture, scene, view,
                           {.scene = words_.scene,
                            .options = options_of(common_, plan_, job),
-                           .command = command(job),
+                           .command = {},
                            .device = context.renderer(),
                            .time = describe_time(words, scene),
                            .exposure = exposure_for(job, scene, view, picture),
@@ -380,7 +380,9 @@ scene_files::Scenarios tabulate(Sweep& sweep, const Words& words) {
         row.time = plan.times[job.time];
         row.picture = sweep.file(job).filename().string();
         row.done = sweep.done(job);
-        row.command = sweep.command(job);
+        const fs::path sidecar = fs::path(sweep.file(job)).replace_extension(".json");
+        row.command = scene_files::sidecar_value(sidecar, "tarn:command")
+                          .value_or(sweep.command(job)); // with the exposure that it has
         row.area_m2 = s.area_m2;
         row.true_area_m2 = s.true_area_m2;
         row.volume_m3 = s.volume_m3;
@@ -422,8 +424,10 @@ int draw_in_processes(Sweep& sweep, const Words& words) {
     std::vector<pid_t> children;
     for (int k = 0; k < processes; ++k) {
         const pid_t child = ::fork();
-        if (child < 0)
-            throw Error("no further process can be started", "ask for fewer --processes");
+        if (child < 0) {
+            spdlog::error("no further process can be started; ask for fewer --processes");
+            break; // those that run go on; what is missing is said at the end
+        }
         if (child == 0) {
             const std::size_t first = jobs.size() * std::size_t(k) / std::size_t(processes);
             const std::size_t last = jobs.size() * std::size_t(k + 1) / std::size_t(processes);
@@ -463,6 +467,8 @@ int run_sweep(Words& words, const scene_files::OptionList& common) {
         throw Error(text("--processes is ", words.processes, ", must be in [1, 256]"));
     if (words.thumbnail_px < 64 || words.thumbnail_px > 4096)
         throw Error(text("--thumbnail is ", words.thumbnail_px, ", must be in [64, 4096] pixels"));
+    if (words.processes > 1)
+        image::read_without_threads(); // they do not come along into other processes
     Sweep sweep(words, common);
     const std::vector<Job>& jobs = sweep.plan().jobs;
     if (words.list) {
@@ -548,9 +554,9 @@ void add_sweep(CLI::App& app, Run& run) {
         run = [words, c] {
             apply_settings_file(*c, words->view);
             // Of the options of a picture those that all share.
-            static const std::vector<std::string> own = {"levels", "cameras",    "times",
-                                                         "format", "difference", "thumbnail",
-                                                         "job",    "processes",  "list"};
+            static const std::vector<std::string> own = {
+                "levels",     "time",      "cameras", "times",     "format",
+                "difference", "thumbnail", "job",     "processes", "list"};
             scene_files::OptionList common;
             for (const auto& option : given_options(*c))
                 if (std::find(own.begin(), own.end(), option.first) == own.end())

@@ -98,24 +98,28 @@ std::string next_picture(const fs::path& folder) {
     throw Error(folder.string() + " is full of pictures", "choose another folder with --pictures");
 }
 
+/// @param import  command that makes the scene, where it is a temporary one
 view::Services services_for(const std::string& folder, const scene::Scene& as_imported,
-                            const Words& words) {
+                            const Words& words, const std::string& import) {
+    // In commands and sidecars a temporary scene has the name that `import` gives it.
+    const std::string named = import.empty() ? folder : "scene";
+    const std::string first = import.empty() ? "" : import + " && ";
     view::Services out;
     out.make_view = [](const view::Options& options, scene::Scene& scene) {
         Parsed parsed(options);
         return make_view(parsed.view, scene);
     };
-    out.command = [folder](const view::Options& options) {
-        return command_of("render", folder, list_of(options)) + " -o picture.png";
+    out.command = [named, first](const view::Options& options) {
+        return first + command_of("render", named, list_of(options)) + " -o picture.png";
     };
-    out.record_command = [folder](const view::Options& options) {
+    out.record_command = [folder, named, first](const view::Options& options) {
         view::Options own = options;
         own.erase("camera");
         std::string path;
         for (const scene::NamedCamera& c : scene_files::load_cameras(folder))
             path += (path.empty() ? "" : "/") + c.name;
         own["path"] = path;
-        return command_of("record", folder, list_of(own)) + " -o frames";
+        return first + command_of("record", named, list_of(own)) + " -o frames";
     };
     out.open_levels = [folder, lake = words.view.lake,
                        scene = std::make_shared<const scene::Scene>(as_imported)] {
@@ -125,20 +129,21 @@ view::Services services_for(const std::string& folder, const scene::Scene& as_im
     out.save_cameras = [folder](const std::vector<scene::NamedCamera>& cameras) {
         scene_files::replace_cameras(folder, cameras);
     };
-    out.save_picture = [folder, pictures = words.pictures](
+    out.save_picture = [named, first, pictures = words.pictures](
                            const Image& picture, const scene::Scene& scene, const scene::View& view,
                            const view::Options& options) {
         Parsed parsed(options);
         parsed.picture.sidecar = true;
         const std::string path = next_picture(pictures);
-        write_picture(path, parsed.picture, picture, scene, view,
-                      {.scene = folder,
-                       .options = list_of(options),
-                       .command = command_of("render", folder, list_of(options)) + " -o " + path,
-                       .device = "tarn view",
-                       .time = describe_time(parsed.view, scene),
-                       .exposure = {},
-                       .more = {}});
+        write_picture(
+            path, parsed.picture, picture, scene, view,
+            {.scene = named,
+             .options = list_of(options),
+             .command = first + command_of("render", named, list_of(options)) + " -o " + path,
+             .device = "tarn view",
+             .time = describe_time(parsed.view, scene),
+             .exposure = {},
+             .more = {}});
         return path;
     };
     out.read_layer = [frame = as_imported.frame](const std::string& path) {
@@ -209,9 +214,11 @@ int run_view(const Words& words, view::Options options) {
                 throw;
             message = error.what(); // back to what was shown before
             temporary.reset();
-            if (!fs::is_directory(shown))
-                throw;
-            folder = shown;
+            next = folder = shown;
+            if (!fs::is_directory(folder)) {
+                temporary.emplace(folder, std::nullopt);
+                folder = temporary->path();
+            }
             scene = scene_files::load(folder);
         }
         const scene::Scene as_imported = scene;
@@ -223,20 +230,26 @@ int run_view(const Words& words, view::Options options) {
         int width = 1280, height = 800;
         if (const auto size = options.find("size"); size != options.end())
             std::sscanf(size->second.c_str(), "%dx%d", &width, &height);
+        const std::string import =
+            temporary ? "tarn import " + *next +
+                            (words.view.level_m && first ? text(" --level ", *words.view.level_m)
+                                                         : std::string()) +
+                            " -o scene"
+                      : std::string();
+        shown = *next;
         const std::string name = scene.lakes.front().name;
         next = view::run_window(
-            scene, services_for(folder, as_imported, words), options,
+            scene, services_for(folder, as_imported, words, import), options,
             {.width_px = width,
              .height_px = height,
              .title = (name.empty() ? fs::path(*next).filename().string() : name) + " - tarn",
              .message = std::exchange(message, {}),
+             .stop = interrupted,
              .log = first ? words.log : "",
              .started = started,
              .egl = words.egl});
         options.clear();
         first = false;
-        if (!temporary)
-            shown = folder;
     }
     return 0;
 }

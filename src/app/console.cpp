@@ -52,6 +52,8 @@ void catch_interrupts() {
     std::signal(SIGTERM, on_interrupt);
 }
 
+bool interrupted() { return stop_asked.load(); }
+
 Progress console_progress() {
     const bool terminal = ::isatty(STDERR_FILENO);
     return Progress([terminal, last = -1](double fraction, const std::string& what) mutable {

@@ -13,6 +13,9 @@ namespace tarn::app {
 /// program.
 void catch_interrupts();
 
+/// Has Ctrl-C or SIGTERM come?
+bool interrupted();
+
 /// A bar on stderr if that is a terminal, silence in a pipe; stops work after Ctrl-C.
 Progress console_progress();
 

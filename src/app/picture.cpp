@@ -66,9 +66,7 @@ image::Metadata describe(const scene::Scene& scene, const scene::View& view,
         {"tarn:level_m", text(lake.level_m)},
         {"tarn:vertical_datum", scene.frame.vertical_datum},
         {"tarn:bed", to_string(lake.bed)},
-        {"tarn:camera", text("x=", c.position.x, ",y=", c.position.y, ",z=", c.position.z,
-                             ",dx=", c.forward.x, ",dy=", c.forward.y, ",dz=", c.forward.z,
-                             ",ux=", c.up.x, ",uy=", c.up.y, ",uz=", c.up.z, ",fov=", c.fov_deg)},
+        {"tarn:camera", camera_words(c)},
         {"tarn:camera_place", text(fixed(eye.lat_deg, 6), ",", fixed(eye.lon_deg, 6), " at ",
                                    fixed(c.position.z, 2), " m")},
         {"tarn:sun_direction", triple(s)},
@@ -135,6 +133,39 @@ std::string command_of(const std::string& command, const std::string& scene,
     std::string out = "tarn " + command + " " + quoted(scene);
     for (const auto& [name, value] : options)
         out += " --" + name + (value == "true" ? "" : " " + quoted(value));
+    return out;
+}
+
+std::string camera_words(const scene::Camera& c) {
+    return text("x=", c.position.x, ",y=", c.position.y, ",z=", c.position.z, ",dx=", c.forward.x,
+                ",dy=", c.forward.y, ",dz=", c.forward.z, ",ux=", c.up.x, ",uy=", c.up.y,
+                ",uz=", c.up.z, ",fov=", c.fov_deg);
+}
+
+scene_files::OptionList with_option(scene_files::OptionList options, const std::string& name,
+                                    const std::string& value) {
+    std::erase_if(options, [&](const auto& option) { return option.first == name; });
+    options.emplace_back(name, value);
+    return options;
+}
+
+std::string files_mark(const scene_files::OptionList& options) {
+    std::string out;
+    for (const auto& [name, value] : options) {
+        if (name != "layers" && name != "water-table" && name != "wind-rose" &&
+            name != "environment" && name != "track")
+            continue;
+        for (std::size_t from = 0; from <= value.size();) {
+            const std::size_t end =
+                name == "layers" ? std::min(value.find(':', from), value.size()) : value.size();
+            const std::filesystem::path path = value.substr(from, end - from);
+            std::error_code failed;
+            const auto size = std::filesystem::file_size(path, failed);
+            const auto time = std::filesystem::last_write_time(path, failed);
+            out += text(" ", path.string(), " ", size, " ", time.time_since_epoch().count());
+            from = end + 1;
+        }
+    }
     return out;
 }
 
@@ -215,7 +246,13 @@ void check_outputs(const std::vector<std::string>& outputs) {
 
 void write_picture(const std::string& output, const PictureWords& words, const Image& picture,
                    const scene::Scene& scene, const scene::View& view, const Record& record) {
-    auto metadata = describe(scene, view, record.device, record.command);
+    scene_files::OptionList options = record.options;
+    if (record.exposure && words.tone != "none")
+        options = with_option(options, "exposure", text(*record.exposure));
+    const std::string command = record.command.empty()
+                                    ? command_of("render", record.scene, options) + " -o " + output
+                                    : record.command;
+    auto metadata = describe(scene, view, record.device, command);
     metadata.insert(record.more.begin(), record.more.end());
     if (std::filesystem::path(output).extension() == ".exr") {
         image::write_exr(output, picture, metadata);
@@ -230,7 +267,7 @@ void write_picture(const std::string& output, const PictureWords& words, const I
     if (words.sidecar)
         write_beside(std::filesystem::path(output).replace_extension(".json").string(),
                      scene_files::sidecar_json(std::filesystem::path(output).filename().string(),
-                                               record.scene, record.options, metadata));
+                                               record.scene, options, metadata));
 }
 
 } // namespace tarn::app

@@ -53,12 +53,23 @@ void check_outputs(const std::vector<std::string>& outputs);
 struct Record {
     std::string scene;               ///< folder, as typed
     scene_files::OptionList options; ///< that make the picture
-    std::string command;             ///< the same in one line
-    std::string device;              ///< what drew it
-    std::string time;                ///< describe_time()
-    std::optional<double> exposure;  ///< instead of what the words say
-    image::Metadata more;            ///< to be said besides
+    std::string
+        command; ///< the same in one line; empty: made of the options and what is chosen here
+    std::string device;             ///< what drew it
+    std::string time;               ///< describe_time()
+    std::optional<double> exposure; ///< instead of what the words say; goes into the options
+    image::Metadata more;           ///< to be said besides
 };
+
+/// As --camera takes it, to the last digit that matters.
+std::string camera_words(const scene::Camera& camera);
+
+/// With another value for one name.
+scene_files::OptionList with_option(scene_files::OptionList options, const std::string& name,
+                                    const std::string& value);
+
+/// Changes when a file that an option names changes: sizes and times of them.
+std::string files_mark(const scene_files::OptionList& options);
 
 /// Writes a picture, .png or .exr, and what the words ask for beside it.
 /// @throws tarn::Error  if a file cannot be written

@@ -38,11 +38,18 @@ DifferenceAreas write_difference(const scene::Scene& scene, dem::Refill& refill,
     Grid<std::uint8_t> found = wet(refill);
     refill.fill(to_m, moved.ground, moved.water, moved.lakes, false);
     const Grid<std::uint8_t> now = wet(refill);
+    refill.fill(refill.lake().level_m, moved.ground, moved.water, moved.lakes, false);
+    const Grid<std::uint8_t> usual = wet(refill);
     DifferenceAreas areas;
     const double cell = scene.ground.spacing_m * scene.ground.spacing_m;
     for (std::size_t i = 0; i < found.values.size(); ++i) {
         const bool before = found.values[i] != 0, after = now.values[i] != 0;
-        found.values[i] = before && after ? 3 : after ? 1 : before ? 2 : 0;
+        // Another lake that it takes up was water before.
+        const bool other =
+            !usual.values[i] && scene.water.codes.values[i] != no_water_code &&
+            scene.ground.offset_m + scene.ground.scale_m * scene.ground.codes.values[i] <
+                scene.water.offset_m + scene.water.scale_m * scene.water.codes.values[i];
+        found.values[i] = (before || other) && after ? 3 : after ? 1 : before ? 2 : 0;
         areas.flooded_m2 += found.values[i] == 1 ? cell : 0.0;
         areas.exposed_m2 += found.values[i] == 2 ? cell : 0.0;
     }
@@ -53,7 +60,7 @@ DifferenceAreas write_difference(const scene::Scene& scene, dem::Refill& refill,
     // The map without any water of this lake, and the classes over it.
     scene::Scene dry = scene;
     for (std::size_t i = 0; i < found.values.size(); ++i)
-        if (found.values[i] != 0)
+        if (found.values[i] != 0 || usual.values[i] != 0)
             dry.water.codes.values[i] = no_water_code;
     Picture map = draw_map(dry, 1400);
     const double step = std::max(double(std::max(found.size.cols, found.size.rows)) / 1400.0, 0.25);

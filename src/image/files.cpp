@@ -212,6 +212,11 @@ Metadata read_metadata(const fs::path& path) {
     return out;
 }
 
+void read_without_threads() {
+    OIIO::attribute("exr_threads", -1);
+    OIIO::attribute("threads", 1);
+}
+
 std::string library_version() { return std::string("OpenImageIO ") + OIIO_VERSION_STRING; }
 
 } // namespace tarn::image

@@ -45,6 +45,9 @@ Picture read_rgba(const std::filesystem::path& path);
 
 Metadata read_metadata(const std::filesystem::path& path);
 
+/// Keeps OpenImageIO from starting threads: before anything is read in a process that will fork.
+void read_without_threads();
+
 /// OpenImageIO's release, for `tarn doctor`.
 std::string library_version();
 

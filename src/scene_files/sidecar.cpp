@@ -47,13 +47,20 @@ bool same_text(const std::filesystem::path& path, const std::string& text) {
     return found == text;
 }
 
-bool sidecar_says(const std::filesystem::path& path, const std::string& name,
-                  const std::string& value) {
+std::optional<std::string> sidecar_value(const std::filesystem::path& path,
+                                         const std::string& name) {
     std::ifstream in(path);
     const json read = json::parse(in, nullptr, false);
-    return !read.is_discarded() && read.is_object() && read.contains("about") &&
-           read["about"].is_object() && read["about"].contains(name) &&
-           read["about"][name] == value;
+    if (read.is_discarded() || !read.is_object() || !read.contains("about") ||
+        !read["about"].is_object() || !read["about"].contains(name) ||
+        !read["about"][name].is_string())
+        return std::nullopt;
+    return read["about"][name].get<std::string>();
+}
+
+bool sidecar_says(const std::filesystem::path& path, const std::string& name,
+                  const std::string& value) {
+    return sidecar_value(path, name) == value;
 }
 
 } // namespace tarn::scene_files

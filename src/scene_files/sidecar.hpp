@@ -2,6 +2,7 @@
 /// @file sidecar.hpp  The small file beside a picture that says how to make it again.
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,10 @@ std::string sidecar_json(const std::string& picture, const std::string& scene,
 /// The options of a sidecar.
 /// @throws tarn::Error  naming the file, if it is none
 OptionList read_sidecar(const std::filesystem::path& path);
+
+/// What the sidecar says of `name`, among "about".
+std::optional<std::string> sidecar_value(const std::filesystem::path& path,
+                                         const std::string& name);
 
 /// Does the file hold just this?
 bool same_text(const std::filesystem::path& path, const std::string& text);

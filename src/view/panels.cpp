@@ -136,7 +136,7 @@ bool sun_panel(Session& session) {
                 session.set(Options{{"sun", ""}, {"environment", ""}, {"environment-turn", ""}});
     } else if (const auto time = parse_solar(session.option("time"));
                time || session.option("time").empty()) {
-        SolarTime now = time.value_or(SolarTime{});
+        SolarTime now = time.value_or(session.usual_time());
         auto hour = static_cast<float>(now.hour);
         const std::string words = format_solar(now);
         if (ImGui::SliderFloat("time", &hour, 0.0f, 23.98f, words.substr(11).c_str())) {
@@ -150,7 +150,7 @@ bool sun_panel(Session& session) {
     } else {
         ImGui::Text("%s", session.option("time").c_str());
         if (ImGui::Button("in solar time instead"))
-            changed |= session.set("time", format_solar(SolarTime{}));
+            changed |= session.set("time", format_solar(session.usual_time()));
     }
     const glm::dvec3& s = session.view.lighting.sun_direction;
     ImGui::Text("sun %.1f deg high", std::asin(std::clamp(s.z, -1.0, 1.0)) * 57.29578);
@@ -184,25 +184,34 @@ bool wind_panel(Session& session) {
 }
 
 bool clarity_panel(Session& session) {
+    // One way of describing the water takes the place of all others.
+    const auto only = [](const std::string& option, const std::string& value) {
+        Options out = {{"secchi", ""},
+                       {"water", ""},
+                       {"water-table", ""},
+                       {"chlorophyll", ""},
+                       {"cdom", ""},
+                       {"turbidity", ""},
+                       {"absorption-per-m", ""},
+                       {"backscattering-per-m", ""}};
+        if (!option.empty())
+            out[option] = value;
+        return out;
+    };
     bool changed = false;
     const bool by_type = !session.option("water").empty();
     auto secchi = static_cast<float>(session.number("secchi", 14.0));
     if (ImGui::SliderFloat("Secchi depth", &secchi, 0.3f, 45.0f, by_type ? "-" : "%.1f m",
                            ImGuiSliderFlags_Logarithmic))
-        changed |= session.set(Options{{"secchi", fixed(secchi, 2)},
-                                       {"water", ""},
-                                       {"water-table", ""},
-                                       {"chlorophyll", ""},
-                                       {"cdom", ""},
-                                       {"turbidity", ""}});
+        changed |= session.set(only("secchi", fixed(secchi, 2)));
     const std::string now = session.option(
         "water", session.option("secchi").empty() ? "as the scene says" : "by Secchi depth");
     if (ImGui::BeginCombo("type", now.c_str())) {
         if (ImGui::Selectable("as the scene says"))
-            changed |= session.set(Options{{"secchi", ""}, {"water", ""}});
+            changed |= session.set(only("", ""));
         for (const std::string& name : scene::water_type_names())
             if (ImGui::Selectable(name.c_str(), name == now))
-                changed |= session.set(Options{{"secchi", ""}, {"water", name}});
+                changed |= session.set(only("water", name));
         ImGui::EndCombo();
     }
     ImGui::TextDisabled("%s", session.scene.optics.name.c_str());
@@ -257,7 +266,9 @@ bool exposure_panel(Session& session, const Screen& screen) {
     return changed;
 }
 
-void camera_panel(Session& session, PanelState& state) {
+/// @return whether the camera is another one now
+bool camera_panel(Session& session, PanelState& state) {
+    bool changed = false;
     for (const scene::NamedCamera& c : session.scene.cameras) {
         if (ImGui::Button(c.name.c_str()))
             session.go_to(c.name);
@@ -286,6 +297,7 @@ void camera_panel(Session& session, PanelState& state) {
     if (ImGui::SliderFloat("field of view", &fov, 10.0f, 100.0f, "%.0f deg")) {
         pose.fov_deg = fov;
         session.flight.jump(pose);
+        changed = true;
     }
     if (ImGui::Button("copy as recording")) {
         try {
@@ -297,10 +309,11 @@ void camera_panel(Session& session, PanelState& state) {
     }
     ImGui::SameLine();
     if (ImGui::Button("undo"))
-        session.flight.undo();
+        changed |= session.flight.undo();
     ImGui::SameLine();
     if (ImGui::Button("redo"))
-        session.flight.redo();
+        changed |= session.flight.redo();
+    return changed;
 }
 
 /// A length that may be left out: a box and a field.
@@ -372,13 +385,13 @@ void measure_panel(Session& session, PanelState& state) {
     }
 }
 
-void picture_panel(Session& session, PanelState& state, Requests& asked) {
-    int size[2] = {state.picture_width_px, state.picture_height_px};
+void picture_panel(Session& session, Requests& asked) {
+    int size[2] = {session.picture_width_px, session.picture_height_px};
     if (ImGui::InputInt2("size", size)) {
-        state.picture_width_px = std::clamp(size[0], 1, 16384);
-        state.picture_height_px = std::clamp(size[1], 1, 16384);
+        session.picture_width_px = std::clamp(size[0], 1, 16384);
+        session.picture_height_px = std::clamp(size[1], 1, 16384);
     }
-    ImGui::SliderInt("rays a pixel", &state.picture_samples, 1, 256);
+    ImGui::SliderInt("rays a pixel", &session.picture_samples, 1, 256);
     bool caption = session.flag("caption");
     if (ImGui::Checkbox("caption", &caption))
         session.set("caption", caption ? "true" : "");
@@ -386,7 +399,7 @@ void picture_panel(Session& session, PanelState& state, Requests& asked) {
     if (ImGui::Button("save (F12)"))
         asked.save_picture = true;
     if (ImGui::Button("copy as command")) {
-        ImGui::SetClipboardText(session.services.command(session.all_options()).c_str());
+        ImGui::SetClipboardText(session.services.command(session.picture_options()).c_str());
         session.say("the command that makes this picture is on the clipboard");
     }
 }
@@ -598,7 +611,7 @@ Requests draw_panels(Session& session, const Screen& screen, PanelState& state, 
         if (section("Clarity", false))
             asked.view_changed |= clarity_panel(session);
         if (section("Cameras", false))
-            camera_panel(session, state);
+            asked.view_changed |= camera_panel(session, state);
         if (section("Measure, layers", false))
             measure_panel(session, state);
         if (section("Map", false))
@@ -608,7 +621,7 @@ Requests draw_panels(Session& session, const Screen& screen, PanelState& state, 
         if (section("Exposure", false))
             asked.view_changed |= exposure_panel(session, screen);
         if (section("Picture", false))
-            picture_panel(session, state, asked);
+            picture_panel(session, asked);
         if (section("Another scene", false)) {
             ImGui::SetNextItemWidth(-70 * scale);
             ImGui::InputTextWithHint("##open", "scene folder or DEM", state.open,

@@ -21,7 +21,6 @@ struct PanelState {
     bool shown = true, help = false;
     double frames_per_s = 0.0;
     std::string device;
-    int picture_width_px = 1920, picture_height_px = 1080, picture_samples = 16;
     char bookmark[64] = "", layer[512] = "", open[512] = "";
     std::vector<std::pair<std::string, double>> pass_ms;
     std::optional<Reading> pointer;

@@ -12,10 +12,13 @@
 namespace tarn::view {
 
 Session::Session(scene::Scene& s, const Services& v, Options options)
-    : scene(s), services(v), view(v.make_view(options, s)), flight(s, pose_of(view.camera)),
-      options_(std::move(options)), usual_optics_(s.optics) {
+    : scene(s), services(v), usual_optics_(s.optics), view(v.make_view(options, s)),
+      flight(s, pose_of(view.camera)), options_(std::move(options)) {
     options_.erase("camera"); // from here on it is flight's
     level_m_ = scene.lakes.front().level_m;
+    for (const LakeRecord& lake : scene.lakes) // the one that moves
+        if (lake.id == int(number("lake", 1)))
+            level_m_ = lake.level_m;
     const std::string paths = option("layers");
     for (std::size_t from = 0; from < paths.size();) {
         const std::size_t end = std::min(paths.find(':', from), paths.size());
@@ -82,6 +85,17 @@ Options Session::all_options() const {
     return out;
 }
 
+Options Session::picture_options() const {
+    Options out = all_options();
+    out["size"] = text(picture_width_px, "x", picture_height_px);
+    out["samples"] = text(picture_samples);
+    return out;
+}
+
+SolarTime Session::usual_time() const { // geo::default_time()
+    return {2026, scene.lakes.front().position.lat_deg >= 0.0 ? 172 : 355, 9.5};
+}
+
 bool Session::advance(double seconds) {
     bool changed = false;
     if (opening_.valid() &&
@@ -99,11 +113,14 @@ bool Session::advance(double seconds) {
         }
     }
     if (play_sun) {
-        SolarTime time = parse_solar(option("time")).value_or(SolarTime{});
-        time.hour += sun_hours_per_s * seconds;
-        if (time.hour >= 24.0)
-            time.hour -= 24.0;
-        changed |= set("time", format_solar(time));
+        // Whole minutes are all that the option can say; at many frames a second less goes by.
+        if (!playing_ || format_solar(*playing_) != option("time"))
+            playing_ = parse_solar(option("time")).value_or(usual_time());
+        playing_->hour += sun_hours_per_s * seconds;
+        if (playing_->hour >= 24.0)
+            playing_->hour -= 24.0;
+        if (const std::string time = format_solar(*playing_); time != option("time"))
+            changed |= set("time", time);
     }
     if (play_waves && !view.waves.calm()) {
         const double loop = view.waves.loop_s > 0.0 ? view.waves.loop_s : 1e9;

@@ -22,6 +22,14 @@ struct Message {
     double left_s = 6.0;
 };
 
+/// "2026-06-21T09:30" to day of the year [1, 366] and hour, and back; for sliders in solar time.
+struct SolarTime {
+    int year = 2026, day = 172;
+    double hour = 9.5;
+};
+std::optional<SolarTime> parse_solar(const std::string& time);
+std::string format_solar(const SolarTime& time);
+
 class Session {
 public:
     /// @throws tarn::Error  if the options make no view
@@ -30,6 +38,11 @@ public:
 
     scene::Scene& scene;
     const Services& services;
+
+private:
+    const scene::WaterOptics usual_optics_; ///< before any option had its say
+
+public:
     scene::View view; ///< that the options make; its camera is flight's
     Flight flight;
 
@@ -46,6 +59,12 @@ public:
 
     /// The options with the camera as it is.
     Options all_options() const;
+    /// The same for the picture that would be saved: its size and rays a pixel.
+    Options picture_options() const;
+    int picture_width_px = 1920, picture_height_px = 1080, picture_samples = 16;
+
+    /// When the sun stands where it does without an option.
+    SolarTime usual_time() const;
 
     /// Once a frame: takes over what other threads have finished.
     /// @return whether the picture has changed
@@ -67,13 +86,14 @@ public:
     // --- messages --------------------------------------------------------------------------------
     void say(const std::string& text) {
         messages.push_back({text, false, 6.0});
-        ++said_;
+        said_.push_back(messages.back());
     }
     void complain(const std::string& text) {
         messages.push_back({text, true, 12.0});
-        ++said_;
+        said_.push_back(messages.back());
     }
-    std::size_t messages_said() const { return said_; }
+    /// Those that nobody has taken yet, for the log.
+    std::vector<Message> take_said() { return std::exchange(said_, {}); }
     std::deque<Message> messages;
 
     // --- bookmarks -------------------------------------------------------------------------------
@@ -100,23 +120,15 @@ private:
     void drape_layers();
 
     Options options_;
-    scene::WaterOptics usual_optics_;
+    std::optional<SolarTime> playing_; ///< finer than the option can say
     std::future<std::unique_ptr<LevelControl>> opening_;
     std::unique_ptr<LevelControl> levels_;
     double level_m_ = 0.0, last_fill_ms_ = 0.0;
     std::optional<Figures> figures_;
     std::vector<Figures> curve_;
     bool scene_changed_ = false, map_changed_ = false;
-    std::size_t said_ = 0;
+    std::vector<Message> said_;
     std::vector<std::string> layer_paths_;
 };
-
-/// "2026-06-21T09:30" to day of the year [1, 366] and hour, and back; for sliders in solar time.
-struct SolarTime {
-    int year = 2026, day = 172;
-    double hour = 9.5;
-};
-std::optional<SolarTime> parse_solar(const std::string& time);
-std::string format_solar(const SolarTime& time);
 
 } // namespace tarn::view

@@ -1,6 +1,7 @@
 #pragma once
 /// @file session_log.hpp  What went on in a window, a JSON object a line: for tests and for
 /// figures.
+#include "core/error.hpp"
 #include "core/text.hpp"
 
 #include <algorithm>
@@ -14,9 +15,13 @@ namespace tarn::view {
 class SessionLog {
 public:
     /// @param path  empty: nothing is written
+    /// @throws tarn::Error  if it cannot be written
     explicit SessionLog(const std::string& path) {
-        if (!path.empty())
-            out_.open(path);
+        if (path.empty())
+            return;
+        out_.open(path);
+        if (!out_)
+            throw Error(path + ": cannot be written", "check the path given with --session-log");
     }
     bool on() const { return out_.is_open(); }
 

@@ -177,16 +177,20 @@ public:
           started_s_(std::chrono::duration<double>(settings.started.time_since_epoch()).count()) {
         state_.device = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
         session_.play_waves = !gpu::is_software();
+        stop_ = settings.stop;
         if (!settings.message.empty())
             session_.complain(settings.message);
         if (gpu::is_software())
-            state_.picture_samples = 4;
+            session_.picture_samples = 4;
         last_s_ = now_s();
     }
 
     std::optional<std::string> run() {
-        while (!glfwWindowShouldClose(window_.get()))
+        while (!glfwWindowShouldClose(window_.get())) {
             frame();
+            if (stop_ && stop_())
+                glfwSetWindowShouldClose(window_.get(), GLFW_TRUE);
+        }
         log_.write(now_s() - started_s_, "closed", {});
         return next_;
     }
@@ -237,9 +241,9 @@ private:
     PanelState state_;
     ConeMaker cones_;
     std::optional<std::string> next_;
+    std::function<bool()> stop_;
     SessionLog log_;
     double started_s_, logged_level_m_ = NAN;
-    std::size_t messages_logged_ = 0;
     bool shown_once_ = false;
     double last_s_ = 0.0, moved_s_ = -1e9, level_s_ = -1e9;
     bool save_asked_ = false;
@@ -307,7 +311,7 @@ void App::keys(double seconds) {
         if (pressed(GLFW_KEY_Y, GLFW_MOD_CONTROL) && session_.flight.redo())
             changed_ = true;
         if (pressed(GLFW_KEY_C, GLFW_MOD_CONTROL)) {
-            ImGui::SetClipboardText(session_.services.command(session_.all_options()).c_str());
+            ImGui::SetClipboardText(session_.services.command(session_.picture_options()).c_str());
             session_.say("the command that makes this picture is on the clipboard");
         }
         if (pressed(GLFW_KEY_ESCAPE)) {
@@ -462,9 +466,7 @@ void App::show() {
 // In strips, with the window alive in between.
 void App::save_picture() {
     try {
-        Options options = session_.all_options();
-        options["size"] = text(state_.picture_width_px, "x", state_.picture_height_px);
-        options["samples"] = text(state_.picture_samples);
+        const Options options = session_.picture_options();
         const scene::View view = session_.services.make_view(options, session_.scene);
         renderer_.prepare(view);
         const int height = view.settings.height_px, samples = view.settings.samples;
@@ -539,9 +541,8 @@ void App::log_frame(double began_s, bool drawn) {
                     {"ground_m", session_.scene.ground.elevation_m(p.position.x, p.position.y)},
                     {"under_water", water && p.position.z < *water ? 1.0 : 0.0}});
     }
-    for (; messages_logged_ < session_.messages_said(); ++messages_logged_)
-        log_.write(t, session_.messages.back().error ? "complaint" : "message", {},
-                   session_.messages.back().text);
+    for (const Message& m : session_.take_said())
+        log_.write(t, m.error ? "complaint" : "message", {}, m.text);
     for (GLenum error = glGetError(); error != GL_NO_ERROR; error = glGetError())
         log_.write(t, "gl error", {{"code", double(error)}});
 }
@@ -589,6 +590,8 @@ void App::frame() {
         log_.write(now - started_s_, "upload", {{"ms", 1e3 * (now_s() - before)}});
         changed_ = true;
         level_s_ = now;
+        if (cones_.busy()) // what is being made is of the level before
+            cones_.start(session_.scene, renderer_.water_lift_m());
     }
     if (session_.take_map_changed()) {
         renderer_.map_changed();

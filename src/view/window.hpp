@@ -4,6 +4,7 @@
 #include "view/services.hpp"
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -12,8 +13,9 @@ namespace tarn::view {
 struct WindowSettings {
     int width_px = 1280, height_px = 720; ///< at first
     std::string title = "tarn";
-    std::string message; ///< shown at first
-    std::string log;     ///< file for what goes on (session_log.hpp); empty: none
+    std::string message;        ///< shown at first
+    std::function<bool()> stop; ///< asked each frame: is the window to close?
+    std::string log;            ///< file for what goes on (session_log.hpp); empty: none
     std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
     bool egl = false; ///< ask GLFW for an EGL context instead of the platform's own
 };

@@ -117,13 +117,15 @@ public:
 
     /// Starts `tarn view` and waits for its first picture.
     void open(const std::string& scene, std::vector<std::string> more = {},
-              double patience_s = 60.0) {
+              const std::string& size = std::to_string(width_px) + "x" +
+                                        std::to_string(height_px)) {
+        const double patience_s = 60.0;
+        std::filesystem::remove(log_path());
         std::vector<std::string> words = {TARN_PROGRAM,
                                           "view",
                                           scene,
                                           "--size",
-                                          std::to_string(width_px) + "x" +
-                                              std::to_string(height_px),
+                                          size,
                                           "--pictures",
                                           folder_.path().string(),
                                           "--session-log",

@@ -106,6 +106,12 @@ TEST(Session, WaterGoesBackToTheScenes) {
     EXPECT_EQ(desk.scene.optics.name, "by Secchi depth");
     session.set("secchi", "");
     EXPECT_EQ(desk.scene.optics.name, usual);
+    // Also where the window was opened with another one.
+    Desk other;
+    Session begun(other.scene, other.services, {{"secchi", "5"}});
+    EXPECT_EQ(other.scene.optics.name, "by Secchi depth");
+    begun.set("secchi", "");
+    EXPECT_EQ(other.scene.optics.name, usual);
 }
 
 TEST(Session, EverythingIsInTheCommand) {
@@ -196,4 +202,11 @@ TEST(Session, TheSunGoesOn) {
     session.play_sun = true;
     EXPECT_TRUE(session.advance(4.0)); // two hours
     EXPECT_EQ(session.option("time"), "2026-06-21T01:00");
+    for (int i = 0; i < 2400; ++i) // at 300 pictures a second, too
+        session.advance(1.0 / 300.0);
+    EXPECT_EQ(session.option("time"), "2026-06-21T05:00");
+    // South of the equator midsummer is in December.
+    desk.scene.lakes[0].position = {-38.0, 176.0};
+    Session south(desk.scene, desk.services, {});
+    EXPECT_EQ(view::format_solar(south.usual_time()), "2026-12-21T09:30");
 }
