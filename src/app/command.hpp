@@ -22,6 +22,7 @@ void add_record(CLI::App& app, Run& run);
 void add_sweep(CLI::App& app, Run& run);
 void add_bench(CLI::App& app, Run& run);
 void add_doctor(CLI::App& app, Run& run);
+void add_manual(CLI::App& app, Run& run);
 
 /// A DEM with everything as the defaults of `tarn import` have it.
 /// @param level_m  nothing: the water surface that is found

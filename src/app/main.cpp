@@ -40,8 +40,11 @@ int main(int argc, char** argv) {
                  "tarn");
     cli.set_version_flag("--version", TARN_VERSION);
     cli.require_subcommand(0, 1);
-    cli.footer("Start with:  tarn import DEM.tif --level auto -o lake\n"
-               "             tarn render lake -o lake.png");
+    cli.footer(
+        "Start with:  tarn view DEM.tif                        a look at once\n"
+        "             tarn import DEM.tif --level auto -o lake  a scene to keep\n"
+        "             tarn view lake                            fly, dive, move the level\n"
+        "             tarn render lake -o lake.png              a picture, no display needed");
     app::Run run;
     app::add_import(cli, run);
     app::add_detect(cli, run);
@@ -54,6 +57,7 @@ int main(int argc, char** argv) {
     app::add_record(cli, run);
     app::add_bench(cli, run);
     app::add_doctor(cli, run);
+    app::add_manual(cli, run);
     try {
         cli.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

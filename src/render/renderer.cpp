@@ -37,35 +37,45 @@ void Renderer::upload_heights() {
     if (heights_.width_px() != size.cols || heights_.height_px() != size.rows)
         heights_ =
             gpu::Texture2D(GL_RG16, size.cols, size.rows, 1, gpu::Filter::nearest, "height field");
-    std::vector<std::uint16_t> packed(2 * size.count());
-    std::vector<double> tops(std::size_t(size.rows), -1e6), deeps(std::size_t(size.rows), 0.0);
+    packed_.resize(2 * size.count());
+    struct Extremes {
+        double water_top = -1e6, deepest = 0.0; // no water: below everything
+        std::uint16_t low = 65535, high = 0;
+    };
+    std::vector<Extremes> rows(std::size_t(size.rows));
     share_out(size.rows, 0, [&](int first, int last) {
         for (int row = first; row < last; ++row) {
-            double& top = tops[std::size_t(row)];
-            double& deep = deeps[std::size_t(row)];
+            Extremes e;
             std::size_t i = ground.codes.index({0, row});
             for (int col = 0; col < size.cols; ++col, ++i) {
-                packed[2 * i] = ground.codes.values[i];
-                packed[2 * i + 1] = water.codes.values[i];
-                if (const std::uint16_t code = water.codes.values[i]; code != no_water_code) {
+                const std::uint16_t z = ground.codes.values[i], code = water.codes.values[i];
+                packed_[2 * i] = z;
+                packed_[2 * i + 1] = code;
+                e.low = std::min(e.low, z);
+                e.high = std::max(e.high, z);
+                if (code != no_water_code) {
                     const double level = water.offset_m + water.scale_m * code;
-                    top = std::max(top, level);
-                    deep = std::max(deep, level - ground.offset_m -
-                                              ground.scale_m * ground.codes.values[i]);
+                    e.water_top = std::max(e.water_top, level);
+                    e.deepest = std::max(e.deepest, level - ground.offset_m - ground.scale_m * z);
                 }
             }
+            rows[std::size_t(row)] = e;
         }
     });
-    water_top_m_ = *std::max_element(tops.begin(), tops.end()); // none: below everything
-    deepest_m_ = *std::max_element(deeps.begin(), deeps.end());
-    heights_.upload(GL_RG, GL_UNSIGNED_SHORT, packed.data());
-    heights_bytes_ = packed.size() * sizeof packed[0];
+    Extremes all;
+    for (const Extremes& e : rows)
+        all = {std::max(all.water_top, e.water_top), std::max(all.deepest, e.deepest),
+               std::min(all.low, e.low), std::max(all.high, e.high)};
+    water_top_m_ = all.water_top;
+    deepest_m_ = all.deepest;
+    heights_.upload(GL_RG, GL_UNSIGNED_SHORT, packed_.data());
+    heights_bytes_ = packed_.size() * sizeof packed_[0];
 
     // Heights on the GPU count from the ground's offset: float32 then resolves a fraction of a
     // code even for relief at some kilometres of altitude.
     block_.heights = {float(ground.offset_m), float(ground.scale_m * 65535.0),
                       float(water.offset_m - ground.offset_m), float(water.scale_m * 65535.0)};
-    double top = ground.max_elevation_m();
+    double top = ground.offset_m + ground.scale_m * all.high;
     std::vector<glm::vec4> lakes;
     for (const LakeRecord& lake : scene_.lakes) {
         top = std::max(top, lake.level_m);
@@ -76,8 +86,7 @@ void Renderer::upload_heights() {
     lakes_ = gpu::Buffer(lakes.size() * sizeof lakes[0], lakes.data());
     block_.counts.w = static_cast<std::uint32_t>(lakes.size());
     top_m_ = top - ground.offset_m;
-    block_.slab = {float(ground.min_elevation_m() - ground.offset_m) / block_.heights.y, 0.0f, 0.0f,
-                   0.0f};
+    block_.slab = {float(ground.scale_m * all.low) / block_.heights.y, 0.0f, 0.0f, 0.0f};
 }
 
 // What is exposed or draped; one texel stands for nothing.
@@ -115,6 +124,7 @@ void Renderer::scene_changed(bool settled) {
     upload_map();
     bounds_.scene_changed();
     if (settled) {
+        packed_ = {}; // kept while somebody drags: fresh memory takes as long as the copy
         shadow_sun_.reset();
         if (waves_)
             waves_->set(
@@ -134,6 +144,7 @@ void Renderer::upload_scene() {
     const Heightfield& ground = scene_.ground;
     const GridSize size = ground.size();
     upload_heights();
+    packed_ = {};
     upload_map();
     block_.walk = {FieldBounds::root_level(size), FieldBounds::cone_shift, 0, 0};
     block_.grid = {float(size.cols), float(size.rows), float(ground.spacing_m), 0.0f};

@@ -192,6 +192,8 @@ private:
         false;            ///< rays may enter the slab of a lake's waves from its side, and leave it
     double lift_m_ = 0.0; ///< how far the walk's water is raised above its level
     scene::Walk walk_ = scene::Walk::cone_map;
+    std::vector<std::uint16_t>
+        packed_; ///< heights as they go up; empty but while a level is dragged
     std::size_t heights_bytes_ = 0;
     int samples_ = 1;
     bool rays_in_step_;

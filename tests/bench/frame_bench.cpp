@@ -4,7 +4,8 @@
 //   tarn_frame_bench [--side N,N,...] [--size WxH,WxH,...] [--view high,shore,dive]
 //                    [--intersection METHOD] [--wind M/S] [--caustics METHOD] [--caustic-texels N]
 //                    [--caustic-photons N]
-//                    [--shaft-steps N] [--frames N] [--json FILE] [--ppm PREFIX]
+//                    [--shaft-steps N] [--map 1] [--drag N] [--frames N] [--json FILE] [--ppm
+//                    PREFIX]
 #include "bench/timing.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
@@ -50,6 +51,8 @@ void write_ppm(const std::string& path, const Image& image) {
 }
 
 int run(int argc, char** argv) {
+    bool map = false;
+    int drag = 0;
     std::string sides = "1024,4096", sizes = "800x600,1920x1080,3840x2160",
                 views = "high,shore,dive";
     std::string json_path, ppm, method = scene::walk_methods().front().name;
@@ -82,6 +85,10 @@ int run(int argc, char** argv) {
             wind = std::atof(value.c_str());
         else if (word == "--frames")
             frames = std::max(1, std::atoi(value.c_str()));
+        else if (word == "--map")
+            map = std::atoi(value.c_str()) != 0;
+        else if (word == "--drag")
+            drag = std::max(0, std::atoi(value.c_str()));
         else if (word == "--json")
             json_path = value;
         else if (word == "--ppm")
@@ -137,6 +144,10 @@ int run(int argc, char** argv) {
                         view.waves.model = waves::Model::jonswap;
                         view.waves.wind_m_per_s = wind;
                     }
+                    if (map) {
+                        view.settings.contours_m = 20.0;
+                        view.settings.depth_contours_m = 5.0;
+                    }
                     renderer.prepare(view);
                     double time_s = 0.0;
                     const bench::Times t = bench::time_on_gpu(
@@ -185,6 +196,35 @@ int run(int argc, char** argv) {
                     }
                 }
             }
+        // A level that somebody drags: heights go up again, maxima are made anew, a picture is
+        // drawn.
+        if (drag > 0) {
+            scene::View view;
+            view.camera = camera_for("high");
+            view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.5, -0.4, 0.75)));
+            view.settings = {.width_px = 1920, .height_px = 1080, .samples = 1};
+            view.settings.walk = scene::Walk::maximum_mipmap;
+            std::vector<double> upload_ms, picture_ms;
+            for (int i = 0; i < drag; ++i) {
+                const auto start = std::chrono::steady_clock::now();
+                renderer.scene_changed(false);
+                glFinish();
+                const auto uploaded = std::chrono::steady_clock::now();
+                renderer.prepare(view);
+                renderer.draw_once();
+                glFinish();
+                const auto drawn = std::chrono::steady_clock::now();
+                upload_ms.push_back(
+                    std::chrono::duration<double, std::milli>(uploaded - start).count());
+                picture_ms.push_back(
+                    std::chrono::duration<double, std::milli>(drawn - uploaded).count());
+            }
+            std::sort(upload_ms.begin(), upload_ms.end());
+            std::sort(picture_ms.begin(), picture_ms.end());
+            std::printf(
+                "%6s^2  level dragged: %.1f ms to the GPU, %.1f ms for maxima and picture\n",
+                side.c_str(), upload_ms[upload_ms.size() / 2], picture_ms[picture_ms.size() / 2]);
+        }
     }
     json += "\n]}\n";
     if (!json_path.empty())

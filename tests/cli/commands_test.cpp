@@ -993,3 +993,25 @@ TEST(Record, WritesPicturesOnceAndKeepsThem) {
                         (t / "g").string(),
                     1, "--fps is 0");
 }
+
+TEST(Manual, HasAPageForEveryCommandAndCompletesItsOptions) {
+    const TempFolder t;
+    ASSERT_EQ(run("tarn manual " + t.path().string()).code, 0);
+    const std::string help = run("tarn").out;
+    EXPECT_EQ(help.find("manual"), std::string::npos) << "it is for the build";
+    int commands = 0;
+    const std::regex line("\n  ([a-z]+)  +[a-z0-9]");
+    for (std::sregex_iterator i(help.begin(), help.end(), line), end; i != end; ++i) {
+        ++commands;
+        const std::string page = test_support::read_file(t / ("tarn-" + (*i)[1].str() + ".1"));
+        EXPECT_NE(page.find(".SH OPTIONS"), std::string::npos) << (*i)[1];
+    }
+    EXPECT_GE(commands, 11);
+    const Outcome done =
+        run("bash -c '. " + (t / "tarn.bash").string() +
+            "; COMP_WORDS=(tarn sweep --lev); COMP_CWORD=2; _tarn; echo ${COMPREPLY[@]}; "
+            "COMP_WORDS=(tarn swe); COMP_CWORD=1; _tarn; echo ${COMPREPLY[@]}'");
+    EXPECT_EQ(done.out, "--levels --level\nsweep\n") << done.err;
+    if (run("command -v groff").code == 0) // no complaints from roff itself
+        EXPECT_EQ(run("groff -ww -man -Tascii " + (t / "tarn-render.1").string()).err, "");
+}

@@ -146,8 +146,13 @@ TEST(WindowReport, FiguresAndPictures) {
             desk.click(150, y, 0.5);
         }
         image::write_png(fs::path(folder) / "panels.png", sheet, {});
-        desk.key("4", 8.0);
-        pause(20.0);
+        desk.key("ctrl+q");
+        EXPECT_EQ(desk.program().wait(20.0), 0);
+    }
+    {
+        Desk desk;
+        desk.open(scene, {"--wind", "3", "--camera", "dive"});
+        pause(25.0);
         image::write_png(fs::path(folder) / "dive.png", cut(desk.screenshot(), 0, 0, 1000, 860),
                          {});
         desk.key("ctrl+q");
@@ -156,9 +161,9 @@ TEST(WindowReport, FiguresAndPictures) {
     std::ofstream out(fs::path(folder) / "figures.md");
     out << "# The window, measured\n\nWritten by `scripts/window-study`: " << device << ", "
         << std::thread::hardware_concurrency()
-        << " threads, window of 800 x 600, the caldera sample at "
-        << info["frame"]["spacing_m"].get<double>()
-        << " m. Frames are medians of the window's whole "
+        << " threads, window of 800 x 600, the caldera sample on "
+        << info["grid"]["cols"].get<int>() << " x " << info["grid"]["rows"].get<int>()
+        << " nodes. Frames are medians of the window's whole "
         << "loop while a key is held.\n\n| | |\n| --- | --- |\n"
         << table.str() << "\nThe log of the first of these sessions: [session.log](session.log).\n";
     std::ofstream(fs::path(folder) / "session.log") << kept;
