@@ -141,6 +141,10 @@ vec3 ground_radiance(Part part, End end, float path_m, float water_m, Sunlit sun
         float shore = part.in_water ? part.level : view.look.z;
         vec2 nodes = vec2(end.cell) + end.inside;
         float near_water = water_share(heights, view.grid.xy, end.cell, end.inside);
+        if (!part.in_water && near_water > 0.0) { // beaches lie at the level of their own lake
+            vec4 codes = textureGather(heights, (vec2(end.cell) + 1.0) * view.inverse_size.xy, 1);
+            shore = max(max(codes.x, codes.y), max(codes.z, codes.w)) * view.heights.w + view.heights.z - view.offset.w;
+        }
         albedo = ground_albedo(nodes * view.grid.z, z - shore, part.in_water, near_water, view.look.x - shore,
                                view.look.y - shore, length(gradient) / view.grid.z, footprint);
         float blurred = part.in_water ? 1.0 - pattern_left(water_m) : 0.0;

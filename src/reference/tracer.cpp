@@ -350,6 +350,18 @@ private:
         return sum;
     }
 
+    /// Of the lake whose shore this is; away from all, the first one's.
+    double shore_level(const Hit& hit) const {
+        const Heightfield& water = scene_.water;
+        const int c = std::clamp(int(hit.col), 0, water.codes.size.cols - 2);
+        const int r = std::clamp(int(hit.row), 0, water.codes.size.rows - 2);
+        std::uint16_t code = no_water_code;
+        for (int k = 0; k < 4; ++k)
+            code = std::max(code, water.codes[{c + k % 2, r + k / 2}]);
+        return code == no_water_code ? scene_.lakes.front().level_m
+                                     : water.offset_m + water.scale_m * code;
+    }
+
     glm::dvec3 albedo(const Hit& hit, bool bed, double level_m, double slope,
                       double footprint) const {
         if (settings_.ground_albedo)
@@ -375,7 +387,7 @@ private:
         }
         double slope = 0.0;
         const glm::dvec3 normal = normal_at(hit, slope);
-        const double level = scene_.lakes.front().level_m;
+        const double level = shore_level(hit);
         glm::dvec3 colour = albedo(hit, false, level, slope, footprint);
         if (scene_.exposed_bed && !settings_.ground_albedo) // was bed: nothing has grown there
             colour = glm::mix(

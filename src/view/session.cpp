@@ -19,6 +19,7 @@ Session::Session(scene::Scene& s, const Services& v, Options options)
     for (const LakeRecord& lake : scene.lakes) // the one that moves
         if (lake.id == int(number("lake", 1)))
             level_m_ = lake.level_m;
+    picture_samples = int(number("samples", picture_samples));
     const std::string paths = option("layers");
     for (std::size_t from = 0; from < paths.size();) {
         const std::size_t end = std::min(paths.find(':', from), paths.size());

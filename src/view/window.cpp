@@ -180,7 +180,7 @@ public:
         stop_ = settings.stop;
         if (!settings.message.empty())
             session_.complain(settings.message);
-        if (gpu::is_software())
+        if (gpu::is_software() && session_.option("samples").empty())
             session_.picture_samples = 4;
         last_s_ = now_s();
     }
