@@ -38,13 +38,13 @@ std::vector<scene::Camera> plan(const Words& words, scene::Scene& scene, int fra
                     "--path overview/shore/dive, say");
     if (!words.path.empty()) {
         std::vector<scene::Camera> keys;
-        for (std::size_t from = 0; from <= words.path.size();) {
-            const std::size_t end = std::min(words.path.find('/', from), words.path.size());
+        for (const std::string& camera : split(words.path, '/')) {
             ViewWords one = words.view;
-            one.camera = words.path.substr(from, end - from);
+            one.camera = camera;
             keys.push_back(make_view(one, scene).camera);
-            from = end + 1;
         }
+        if (keys.empty())
+            throw Error("--path names no camera", "--path overview/shore/dive, say");
         return scene::path_through(keys, frames, scene.ground);
     }
     for (const dem::VectorFeature& f : dem::read_vectors(words.track, scene.frame))
@@ -58,11 +58,7 @@ std::vector<scene::Camera> plan(const Words& words, scene::Scene& scene, int fra
     throw Error(words.track + ": holds no line to follow", "give a track, not waypoints");
 }
 
-std::string frame_name(int index) {
-    std::string number = std::to_string(index + 1);
-    number.insert(0, number.size() < 5 ? 5 - number.size() : 0, '0');
-    return "frame_" + number + ".png";
-}
+std::string frame_name(int index) { return "frame_" + numbered(index + 1, 5) + ".png"; }
 
 /// Each picture's exposure, found in small ones and smoothed over half a second: no flicker.
 std::vector<double> exposures(const Words& words, const std::vector<scene::Camera>& way,
@@ -76,9 +72,7 @@ std::vector<double> exposures(const Words& words, const std::vector<scene::Camer
     for (std::size_t i = 0; i < way.size(); ++i) {
         progress.report(0.1 * double(i) / double(way.size()), "finding exposures");
         view.camera = way[i];
-        const glm::dvec3& p = way[i].position;
-        const auto level = scene.water_level_m(p.x, p.y);
-        under.push_back(level && p.z < *level);
+        under.push_back(scene.under_water(way[i].position));
         raw.push_back(
             std::log(choose_exposure(words.picture.exposure, renderer.draw(view), scene, view)));
     }
@@ -101,60 +95,24 @@ std::vector<double> exposures(const Words& words, const std::vector<scene::Camer
     return out;
 }
 
-int run_record(const Words& words, const scene_files::OptionList& options) {
-    if (!(words.seconds > 0.0 && words.seconds <= 36'000.0))
-        throw Error(text("--seconds is ", words.seconds, ", must be in (0, 36000]"));
-    if (!(words.frames_per_s >= 0.1 && words.frames_per_s <= 240.0))
-        throw Error(text("--fps is ", words.frames_per_s, ", must be in [0.1, 240]"));
-    if (!(words.above_m > 0.0 && words.above_m <= 1e5))
-        throw Error(text("--above is ", words.above_m, " m, must be in (0, 100000]"));
-    if (!words.video.empty() && std::system("command -v ffmpeg >/dev/null 2>&1") != 0)
-        throw Error("--video needs ffmpeg, which is not here",
-                    "install it (Debian: ffmpeg), or leave --video out and keep the pictures");
-    const double wanted = std::round(words.seconds * words.frames_per_s);
-    if (!(wanted <= 100'000.0))
-        throw Error(text("that is ", wanted, " pictures"), "ask for fewer than 100000");
-    const int frames = std::max(1, int(wanted));
-    scene::Scene scene = load_scene(words.scene, words.view);
-    scene::View view = make_view(words.view, scene);
-    const std::vector<scene::Camera> way = plan(words, scene, frames);
-    fs::create_directories(words.output);
-    // Pictures of the same recording are kept, those of another are in the way.
-    const fs::path record = fs::path(words.output) / "record.json";
-    const std::string command = command_of("record", words.scene, options);
-    std::string all; // every camera counts: bookmarks and tracks may have changed
-    for (const scene::Camera& c : way)
-        all += camera_words(c);
-    const std::string about = scene_files::sidecar_json(
-        "frame_*.png", words.scene, options,
-        {{"tarn:command", command},
-         {"tarn:identity", text(std::hash<std::string>{}(scene_files::identity(words.scene)))},
-         {"tarn:way", text(std::hash<std::string>{}(all + files_mark(options)))},
-         {"Software", text("tarn ", TARN_VERSION)}});
-    if (fs::exists(record) && !scene_files::same_text(record, about))
-        throw Error(words.output + ": holds another recording", "choose another folder with -o");
-    if (!fs::exists(record) && fs::exists(fs::path(words.output) / frame_name(0)))
-        throw Error(words.output + ": holds pictures of another recording",
-                    "choose another folder with -o");
-    write_beside(record.string(), about);
-
+/// Draws those pictures of the way that are missing.
+void draw(const Words& words, const scene_files::OptionList& options,
+          const std::vector<scene::Camera>& way, const std::vector<int>& missing,
+          const scene::Scene& scene, scene::View view) {
     const gpu::Context context;
     render::Renderer renderer(scene);
     const Progress progress = console_progress();
     const std::vector<double> exposure =
         words.picture.tone == "none" ? std::vector<double>(way.size(), 1.0)
                                      : exposures(words, way, scene, view, renderer, progress);
-    int drawn = 0;
     const double begin_s = view.waves.time_s;
-    for (int i = 0; i < frames; ++i) {
+    for (const int i : missing) {
         const fs::path path = fs::path(words.output) / frame_name(i);
-        if (fs::exists(path))
-            continue;
         view.camera = way[std::size_t(i)];
         if (!view.waves.calm())
             view.waves.time_s = begin_s + i / words.frames_per_s;
         const Image picture = renderer.draw(view, [&](double share) {
-            progress.report(0.1 + 0.9 * (i + share) / frames, frame_name(i));
+            progress.report(0.1 + 0.9 * (i + share) / double(way.size()), frame_name(i));
         });
         scene_files::OptionList own; // of this picture alone
         for (const auto& option : options)
@@ -172,24 +130,62 @@ int run_record(const Words& words, const scene_files::OptionList& options) {
                        .time = describe_time(words.view, scene),
                        .exposure = exposure[std::size_t(i)],
                        .more = {}});
-        ++drawn;
     }
     end_progress();
-    std::cout << "wrote " << drawn << " of " << frames << " pictures to " << words.output << "\n";
+}
+
+int run_record(const Words& words, const scene_files::OptionList& options) {
+    if (!(words.seconds > 0.0 && words.seconds <= 36'000.0))
+        throw Error(text("--seconds is ", words.seconds, ", must be in (0, 36000]"));
+    if (!(words.frames_per_s >= 0.1 && words.frames_per_s <= 240.0))
+        throw Error(text("--fps is ", words.frames_per_s, ", must be in [0.1, 240]"));
+    if (!(words.above_m > 0.0 && words.above_m <= 1e5))
+        throw Error(text("--above is ", words.above_m, " m, must be in (0, 100000]"));
+    if (!words.video.empty() && std::system("command -v ffmpeg >/dev/null 2>&1") != 0)
+        throw Error("--video needs ffmpeg, which is not here",
+                    "install it (Debian: ffmpeg), or leave --video out and keep the pictures");
+    const double wanted = std::round(words.seconds * words.frames_per_s);
+    if (!(wanted <= 100'000.0))
+        throw Error(text("that is ", wanted, " pictures"), "ask for fewer than 100000");
+    const int frames = std::max(1, int(wanted));
+    scene::Scene scene = load_scene(words.scene, words.view);
+    const scene::View view = make_view(words.view, scene);
+    const std::vector<scene::Camera> way = plan(words, scene, frames);
+    fs::create_directories(words.output);
+    // Pictures of the same recording are kept, those of another are in the way.
+    const fs::path record = fs::path(words.output) / "record.json";
+    const std::string command = command_of("record", words.scene, options);
+    std::string all; // every camera counts: bookmarks and tracks may have changed
+    for (const scene::Camera& c : way)
+        all += camera_words(c);
+    const std::string about = scene_files::sidecar_json(
+        "frame_*.png", words.scene, options,
+        {{"tarn:command", command},
+         {"tarn:job", short_sum(scene_files::identity(words.scene) + all + files_mark(options))}});
+    if (fs::exists(record) && !scene_files::same_text(record, about))
+        throw Error(words.output + ": holds another recording", "choose another folder with -o");
+    if (!fs::exists(record) && fs::exists(fs::path(words.output) / frame_name(0)))
+        throw Error(words.output + ": holds pictures of another recording",
+                    "choose another folder with -o");
+    write_beside(record.string(), about);
+
+    std::vector<int> missing;
+    for (int i = 0; i < frames; ++i)
+        if (!fs::exists(fs::path(words.output) / frame_name(i)))
+            missing.push_back(i);
+    if (!missing.empty())
+        draw(words, options, way, missing, scene, view);
+    std::cout << "wrote " << missing.size() << " of " << frames << " pictures to " << words.output
+              << "\n";
     if (!words.video.empty()) {
-        const auto quoted = [](const std::string& word) {
-            std::string out = "'";
-            for (const char c : word)
-                out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-            return out + "'";
-        };
         const fs::path part =
             fs::path(words.video)
                 .replace_extension(".part" + fs::path(words.video).extension().string());
-        const std::string shell = text("ffmpeg -v error -y -framerate ", words.frames_per_s, " -i ",
-                                       quoted((fs::path(words.output) / "frame_%05d.png").string()),
-                                       " -vf 'crop=trunc(iw/2)*2:trunc(ih/2)*2' -pix_fmt yuv420p ",
-                                       quoted(part.string()), " </dev/null");
+        const std::string shell =
+            text("ffmpeg -v error -y -framerate ", words.frames_per_s, " -i ",
+                 shell_word((fs::path(words.output) / "frame_%05d.png").string()),
+                 " -vf 'crop=trunc(iw/2)*2:trunc(ih/2)*2' -pix_fmt yuv420p ",
+                 shell_word(part.string()), " </dev/null");
         if (std::system(shell.c_str()) != 0) {
             std::error_code ignored;
             fs::remove(part, ignored);

@@ -60,17 +60,6 @@ struct Plan {
     std::vector<Job> jobs;          ///< level by level
 };
 
-std::vector<std::string> split(const std::string& words, char separator) {
-    std::vector<std::string> out;
-    for (std::size_t from = 0; from <= words.size();) {
-        const std::size_t end = std::min(words.find(separator, from), words.size());
-        if (end > from)
-            out.push_back(words.substr(from, end - from));
-        from = end + 1;
-    }
-    return out;
-}
-
 /// For names of files: letters, digits, point, dash and underscore.
 std::string file_word(const std::string& word) {
     std::string out;
@@ -139,21 +128,6 @@ scene_files::OptionList options_of(const scene_files::OptionList& common, const 
     return out;
 }
 
-/// Changes with anything that changes the picture: options, scene, camera, program.
-std::string fingerprint(const std::string& scene, const scene::Camera* camera,
-                        const std::string& command) {
-    std::string all = scene + command;
-    if (camera)
-        for (const glm::dvec3& v : {camera->position, camera->forward, camera->up})
-            all += text(" ", v.x, ",", v.y, ",", v.z);
-    std::uint64_t sum = 14695981039346656037ull; // FNV-1a
-    for (const char c : all)
-        sum = (sum ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-    std::ostringstream out;
-    out << TARN_VERSION << "-" << std::hex << sum;
-    return out.str();
-}
-
 class Sweep {
 public:
     Sweep(const Words& words, const scene_files::OptionList& common)
@@ -172,12 +146,14 @@ public:
                file(job).string();
     }
 
+    /// Changes with anything that changes the picture: options, scene, camera, program.
     std::string mark(const Job& job) const {
         const scene::Camera* named = nullptr;
         for (const scene::NamedCamera& c : scene_.cameras)
             if (c.name == plan_.cameras[job.camera].words)
                 named = &c.camera;
-        return fingerprint(identity_, named, command(job) + files_mark(common_));
+        return short_sum(identity_ + command(job) + files_mark(common_) +
+                         (named ? camera_words(*named) : std::string()));
     }
 
     /// Is the picture there, made from this scene with these options?
@@ -214,13 +190,12 @@ private:
     scene::Scene scene_; ///< as imported
     std::string identity_;
     std::optional<dem::Refill> refill_;
-    std::map<std::pair<std::size_t, std::size_t>, double> exposures_; ///< by camera and time
+    struct Usual { ///< of the lake as imported
+        bool known = false, under_water = false;
+        double exposure = 1.0;
+    };
+    std::map<std::pair<std::size_t, std::size_t>, Usual> usual_; ///< by camera and time
 };
-
-bool under_water(const scene::Scene& scene, const glm::dvec3& p) {
-    const auto level = scene.water_level_m(p.x, p.y);
-    return level && p.z < *level;
-}
 
 // Pictures of one camera and time are to be compared: they share the exposure that suits the lake
 // as imported, unless the water has come over the camera, or gone from it.
@@ -230,22 +205,23 @@ double Sweep::exposure_for(const Job& job, const scene::Scene& scene, const scen
         return words_.picture.tone == "none"
                    ? 1.0
                    : choose_exposure(words_.picture.exposure, picture, scene, view);
-    ViewWords usual = words_of(words_, plan_, job);
-    usual.level_m.reset();
-    scene::Scene before = scene_;
-    scene::View as_imported = make_view(usual, before);
-    if (under_water(before, as_imported.camera.position) !=
-        under_water(scene, view.camera.position))
-        return choose_exposure("auto", picture, scene, view);
-    const auto key = std::pair(job.camera, job.time);
-    if (const auto known = exposures_.find(key); known != exposures_.end())
-        return known->second;
-    as_imported.settings.width_px = std::max(16, view.settings.width_px / 8);
-    as_imported.settings.height_px = std::max(9, view.settings.height_px / 8);
-    as_imported.settings.samples = 1;
-    render::Renderer renderer(before);
-    const Image small = renderer.draw(as_imported);
-    return exposures_[key] = choose_exposure("auto", small, before, as_imported);
+    Usual& usual = usual_[{job.camera, job.time}];
+    if (!usual.known) {
+        ViewWords words = words_of(words_, plan_, job);
+        words.level_m.reset();
+        scene::Scene before = scene_;
+        scene::View as_imported = make_view(words, before);
+        as_imported.settings.width_px = std::max(16, view.settings.width_px / 8);
+        as_imported.settings.height_px = std::max(9, view.settings.height_px / 8);
+        as_imported.settings.samples = 1;
+        render::Renderer renderer(before);
+        const Image small = renderer.draw(as_imported);
+        usual = {true, before.under_water(as_imported.camera.position),
+                 choose_exposure("auto", small, before, as_imported)};
+    }
+    return usual.under_water == scene.under_water(view.camera.position)
+               ? usual.exposure
+               : choose_exposure("auto", picture, scene, view);
 }
 
 int Sweep::draw(const std::vector<Job>& jobs) {
@@ -263,7 +239,6 @@ int Sweep::draw(const std::vector<Job>& jobs) {
     scene::Scene scene = scene_;
     std::unique_ptr<render::Renderer> renderer;
     std::optional<std::size_t> level;
-    std::optional<dem::Refill>& moved = refill_;
     std::size_t count = 0;
     for (const Job& job : missing) {
         try {
@@ -271,8 +246,7 @@ int Sweep::draw(const std::vector<Job>& jobs) {
             const ViewWords words = words_of(words_, plan_, job);
             if (level != job.level) {
                 renderer.reset();
-                refill();
-                move_level(*moved, plan_.levels_m[job.level], scene, true);
+                move_level(refill(), plan_.levels_m[job.level], scene, true);
                 level = job.level;
             }
             const scene::View view = make_view(words, scene);

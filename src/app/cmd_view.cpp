@@ -35,8 +35,7 @@ struct Words {
 /// dem::Refill as the window knows it.
 class RefilledLevels : public view::LevelControl {
 public:
-    RefilledLevels(dem::Refill refill, double level_m)
-        : refill_(std::move(refill)), level_m_(level_m) {}
+    explicit RefilledLevels(dem::Refill refill) : refill_(std::move(refill)) {}
     double lowest_m() const override { return refill_.lowest_m(); }
     double highest_m() const override { return refill_.highest_m(); }
     double usual_m() const override { return refill_.lake().level_m; }
@@ -57,7 +56,6 @@ private:
         return {f.level_m, f.area_m2, f.volume_m3, f.max_depth_m, f.open_at_edge};
     }
     dem::Refill refill_;
-    double level_m_;
 };
 
 /// A command line of options, read as `tarn render` reads it.
@@ -89,9 +87,7 @@ scene_files::OptionList list_of(const view::Options& options) {
 /// A name that is not taken: tarn_001.png, tarn_002.png, ...
 std::string next_picture(const fs::path& folder) {
     for (int i = 1; i < 100'000; ++i) {
-        std::string number = std::to_string(i);
-        number.insert(0, number.size() < 3 ? 3 - number.size() : 0, '0');
-        const fs::path path = folder / ("tarn_" + number + ".png");
+        const fs::path path = folder / ("tarn_" + numbered(i, 3) + ".png");
         if (!fs::exists(path))
             return path.string();
     }
@@ -123,8 +119,8 @@ view::Services services_for(const std::string& folder, const scene::Scene& as_im
     };
     out.open_levels = [folder, lake = words.view.lake,
                        scene = std::make_shared<const scene::Scene>(as_imported)] {
-        return std::unique_ptr<view::LevelControl>(std::make_unique<RefilledLevels>(
-            make_refill(folder, *scene, lake, Progress{}), scene->lakes.front().level_m));
+        return std::unique_ptr<view::LevelControl>(
+            std::make_unique<RefilledLevels>(make_refill(folder, *scene, lake, Progress{})));
     };
     out.save_cameras = [folder](const std::vector<scene::NamedCamera>& cameras) {
         scene_files::replace_cameras(folder, cameras);

@@ -77,6 +77,15 @@ void end_progress() {
     bar_shown = false;
 }
 
+std::string shell_word(const std::string& word) {
+    if (!word.empty() && word.find_first_of(" '\"\\$`*?;&|<>(){}[]#~!\n") == std::string::npos)
+        return word;
+    std::string out = "'";
+    for (const char c : word)
+        out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+}
+
 std::vector<double> parse_numbers(const std::string& option, const std::string& words,
                                   std::size_t count) {
     std::vector<double> out;

@@ -36,6 +36,9 @@ GeoPoint parse_place(const std::string& option, const std::string& words);
 std::string format_area(double m2);
 std::string format_volume(double m3);
 
+/// As a shell takes it, quoted if need be.
+std::string shell_word(const std::string& word);
+
 /// Writes a text file beside its name and renames it, so that no half file is left.
 /// @throws tarn::Error  if it cannot be written
 void write_beside(const std::string& path, const std::string& content);

@@ -19,12 +19,8 @@ const std::string& command_line() { return typed; }
 
 void remember_command_line(int argc, char** argv) {
     typed = "tarn";
-    for (int i = 1; i < argc; ++i) {
-        const std::string word = argv[i];
-        const bool plain =
-            !word.empty() && word.find_first_of(" '\"\\$`*?;&|<>(){}[]") == std::string::npos;
-        typed += plain ? " " + word : " '" + word + "'";
-    }
+    for (int i = 1; i < argc; ++i)
+        typed += " " + shell_word(argv[i]);
 }
 
 } // namespace tarn::app

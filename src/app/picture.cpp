@@ -120,19 +120,9 @@ scene_files::OptionList given_options(const CLI::App& c) {
 
 std::string command_of(const std::string& command, const std::string& scene,
                        const scene_files::OptionList& options) {
-    const auto quoted = [](const std::string& word) {
-        const bool plain =
-            !word.empty() && word.find_first_of(" '\"\\$`*?;&|<>(){}[]#~!\n") == std::string::npos;
-        if (plain)
-            return word;
-        std::string out = "'";
-        for (const char c : word)
-            out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-        return out + "'";
-    };
-    std::string out = "tarn " + command + " " + quoted(scene);
+    std::string out = "tarn " + command + " " + shell_word(scene);
     for (const auto& [name, value] : options)
-        out += " --" + name + (value == "true" ? "" : " " + quoted(value));
+        out += " --" + name + (value == "true" ? "" : " " + shell_word(value));
     return out;
 }
 
@@ -149,21 +139,27 @@ scene_files::OptionList with_option(scene_files::OptionList options, const std::
     return options;
 }
 
+std::string short_sum(const std::string& text) {
+    std::uint64_t sum = 14695981039346656037ull; // FNV-1a
+    for (const char c : text)
+        sum = (sum ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+    std::ostringstream out;
+    out << TARN_VERSION << "-" << std::hex << sum;
+    return out.str();
+}
+
 std::string files_mark(const scene_files::OptionList& options) {
     std::string out;
     for (const auto& [name, value] : options) {
         if (name != "layers" && name != "water-table" && name != "wind-rose" &&
             name != "environment" && name != "track")
             continue;
-        for (std::size_t from = 0; from <= value.size();) {
-            const std::size_t end =
-                name == "layers" ? std::min(value.find(':', from), value.size()) : value.size();
-            const std::filesystem::path path = value.substr(from, end - from);
+        for (const std::filesystem::path path :
+             name == "layers" ? split(value, ':') : std::vector<std::string>{value}) {
             std::error_code failed;
             const auto size = std::filesystem::file_size(path, failed);
             const auto time = std::filesystem::last_write_time(path, failed);
             out += text(" ", path.string(), " ", size, " ", time.time_since_epoch().count());
-            from = end + 1;
         }
     }
     return out;
@@ -212,18 +208,14 @@ Picture add_caption(const Picture& picture, const Image& image, const scene::Sce
         const double metre_px =
             image.height_px /
             (2.0 * std::tan(0.5 * view.camera.fov_deg * 3.14159265358979 / 180.0) * distance);
-        const double metres = 0.12 * image.width_px / metre_px;
-        const double decade = std::pow(10.0, std::floor(std::log10(metres)));
-        const double length = decade * (metres / decade >= 5 ? 5 : metres / decade >= 2 ? 2 : 1);
+        const double length = round_length(0.12 * image.width_px / metre_px);
         const int px = int(std::lround(length * metre_px));
         const std::string label =
-            (length >= 1000 ? fixed(length / 1000, 0) + " km"
-             : length >= 1  ? fixed(length, 0) + " m"
-                            : fixed(100 * length, 0) + " cm") +
-            (view.camera.forward.z < -0.999 ? ""
-             : distance >= 1000             ? ", " + fixed(distance / 1000, 1) + " km away"
-             : distance >= 10               ? ", " + fixed(distance, 0) + " m away"
-                                            : ", " + fixed(distance, 1) + " m away");
+            length_words(length) + (view.camera.forward.z < -0.999 ? ""
+                                    : distance >= 1000
+                                        ? ", " + fixed(distance / 1000, 1) + " km away"
+                                    : distance >= 10 ? ", " + fixed(distance, 0) + " m away"
+                                                     : ", " + fixed(distance, 1) + " m away");
         const int right = out.width_px - size, wide = int(0.55 * size * double(label.size()));
         image::fill_box(out, right - wide - size - px, base - size / 3 - 2, right - wide - size,
                         base - size / 3 + 2, 235);

@@ -68,6 +68,9 @@ std::string camera_words(const scene::Camera& camera);
 scene_files::OptionList with_option(scene_files::OptionList options, const std::string& name,
                                     const std::string& value);
 
+/// A word that changes with every letter of the text, and with the release.
+std::string short_sum(const std::string& text);
+
 /// Changes when a file that an option names changes: sizes and times of them.
 std::string files_mark(const scene_files::OptionList& options);
 

@@ -62,15 +62,12 @@ Picture draw_map(const scene::Scene& scene, int side_px) {
         }
 
     // A bar of a round length, about a quarter of the width.
-    const double metres = 0.25 * out.width_px * reach;
-    const double decade = std::pow(10.0, std::floor(std::log10(metres)));
-    const double length = decade * (metres / decade >= 5 ? 5 : metres / decade >= 2 ? 2 : 1);
+    const double length = round_length(0.25 * out.width_px * reach);
     const int bar = int(length / reach), size = std::max(11, out.width_px / 45), margin = size;
     const int base = out.height_px - margin;
     image::fill_box(out, margin - 1, base - 5, margin + bar + 1, base + 1, 20);
     image::fill_box(out, margin, base - 4, margin + bar, base, 245);
-    image::draw_text(out, margin, base - size / 2 - 4, size,
-                     length >= 1000 ? fixed(length / 1000, 0) + " km" : fixed(length, 0) + " m");
+    image::draw_text(out, margin, base - size / 2 - 4, size, length_words(length));
     return out;
 }
 

@@ -177,21 +177,16 @@ void move_level(dem::Refill& refill, double level_m, scene::Scene& scene, bool s
 void lay_layers(const ViewWords& words, scene::Scene& scene) {
     std::vector<std::vector<glm::dvec2>> lines;
     std::vector<glm::dvec2> points;
-    for (std::size_t from = 0; from < words.layers.size();) {
-        const std::size_t end = std::min(words.layers.find(':', from), words.layers.size());
-        if (end > from)
-            for (const dem::VectorFeature& f :
-                 dem::read_vectors(words.layers.substr(from, end - from), scene.frame)) {
-                for (const auto& line : f.lines) {
-                    lines.emplace_back();
-                    for (const ScenePoint& p : line)
-                        lines.back().push_back({p.x_m, p.y_m});
-                }
-                for (const ScenePoint& p : f.points)
-                    points.push_back({p.x_m, p.y_m});
+    for (const std::string& path : split(words.layers, ':'))
+        for (const dem::VectorFeature& f : dem::read_vectors(path, scene.frame)) {
+            for (const auto& line : f.lines) {
+                lines.emplace_back();
+                for (const ScenePoint& p : line)
+                    lines.back().push_back({p.x_m, p.y_m});
             }
-        from = end + 1;
-    }
+            for (const ScenePoint& p : f.points)
+                points.push_back({p.x_m, p.y_m});
+        }
     scene.drape.reset();
     if (lines.empty() && points.empty())
         return;
@@ -435,19 +430,6 @@ void apply_settings_file(CLI::App& c, const ViewWords& w) {
     }
 }
 
-namespace {
-/// Parts with / between them.
-std::vector<std::string> split_list(const std::string& words) {
-    std::vector<std::string> out;
-    for (std::size_t from = 0; from <= words.size();) {
-        const std::size_t end = std::min(words.find('/', from), words.size());
-        out.push_back(words.substr(from, end - from));
-        from = end + 1;
-    }
-    return out;
-}
-} // namespace
-
 double convergence_deg(const scene::Scene& scene) {
     const ScenePoint p = geo::to_scene(scene.frame, scene.lakes.front().position);
     return convergence_at(scene, p.x_m, p.y_m);
@@ -487,7 +469,7 @@ waves::Settings make_waves(const ViewWords& w, const scene::Scene& scene) {
         s.patch_m = w.wave_patch;
     if (w.pokes) {
         s.ripples.pokes.clear();
-        for (const std::string& one : split_list(*w.pokes)) {
+        for (const std::string& one : split(*w.pokes, '/')) {
             const std::size_t numbers = 1 + std::size_t(std::count(one.begin(), one.end(), ','));
             if (numbers < 2 || numbers > 5)
                 throw Error("--poke: '" + one + "' is not understood",
@@ -505,7 +487,7 @@ waves::Settings make_waves(const ViewWords& w, const scene::Scene& scene) {
     }
     if (w.wave_list) {
         s.list.clear();
-        for (const std::string& one : split_list(*w.wave_list)) {
+        for (const std::string& one : split(*w.wave_list, '/')) {
             const std::size_t numbers = 1 + std::size_t(std::count(one.begin(), one.end(), ','));
             if (numbers != 3 && numbers != 4)
                 throw Error("--wave-list: '" + one + "' is not understood",

@@ -36,6 +36,10 @@ struct Heightfield {
 
     /// Bilinear elevation at scene position (x, y); outside the field the nearest edge counts.
     double elevation_m(double x, double y) const;
+    /// Of all codes there could be: no node lies beyond, and at once.
+    double lower_bound_m() const { return offset_m; }
+    double upper_bound_m() const { return offset_m + 65535.0 * scale_m; }
+    /// Of the nodes; looks at all of them.
     double min_elevation_m() const;
     double max_elevation_m() const;
 };

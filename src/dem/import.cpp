@@ -721,11 +721,10 @@ ImportResult Work::pack(std::vector<LakeRecord> lakes, const HeightsSink& keep_h
     out.water = empty_water(out.ground, levels);
     for (double& level : levels)
         level = drawn_level_m(out.water, level);
-    const std::size_t raised = separate(out.ground, lake_of_, levels);
+    const std::size_t raised = pour(out.ground, lake_of_, levels, out.ground, out.water);
     if (raised > 0)
         note(text(raised, " nodes beside the water (no data, or below a dam) were raised to just "
                           "above the level, where the lake ends"));
-    pour(out.water, lake_of_, levels);
     lake_of_ = {};
     std::erase_if(lakes, [](const LakeRecord& lake) { return lake.area_m2 == 0.0; });
     out.lakes = std::move(lakes);

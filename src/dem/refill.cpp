@@ -256,7 +256,7 @@ void Refill::fill(double level_m, Heightfield& ground, Heightfield& water,
     if (!(ground.codes.size == size))
         ground = ground_;
     water = std::move(empty);
-    separate_and_pour(ground_, lake_of_, levels, ground, water);
+    pour(ground_, lake_of_, levels, ground, water);
 
     lakes.clear();
     for (std::size_t k = 0; k < lakes_.size(); ++k)

@@ -81,49 +81,8 @@ std::size_t part_lakes(LakeOf& lake_of, std::span<const double> levels) {
     return dried;
 }
 
-std::size_t separate(Heightfield& ground, const LakeOf& lake_of, std::span<const double> levels) {
-    std::vector<std::uint16_t> below, above;
-    for (const double level : levels) {
-        const double exact = (level - ground.offset_m) / ground.scale_m;
-        below.push_back(
-            static_cast<std::uint16_t>(std::clamp(std::ceil(exact) - 1.0, 0.0, 65535.0)));
-        above.push_back(
-            static_cast<std::uint16_t>(std::clamp(std::floor(exact) + 1.0, 0.0, 65535.0)));
-    }
-    for (std::size_t i = 0; i < lake_of.values.size(); ++i)
-        if (const unsigned lake = lake_of.values[i]; lake != 0)
-            ground.codes.values[i] = std::min(ground.codes.values[i], below[lake - 1]);
-    std::size_t raised = 0;
-    each_shore_node(lake_of, [&](Node at) {
-        const std::uint16_t least = above[lake_of[at] - 1u];
-        each_neighbour(ground.size(), at, [&](Node n) {
-            if (lake_of[n] == 0 && ground.codes[n] < least) {
-                raised += least - ground.codes[n] > 1;
-                ground.codes[n] = least;
-            }
-        });
-    });
-    return raised;
-}
-
-void pour(Heightfield& water, const LakeOf& lake_of, std::span<const double> levels) {
-    std::vector<std::uint16_t> codes;
-    for (const double level : levels)
-        codes.push_back(code_of(water, level));
-    for (std::size_t i = 0; i < lake_of.values.size(); ++i)
-        if (const unsigned lake = lake_of.values[i]; lake != 0)
-            water.codes.values[i] = codes[lake - 1];
-    each_shore_node(lake_of, [&](Node at) {
-        const std::uint16_t code = codes[lake_of[at] - 1u];
-        each_neighbour(water.size(), at, [&](Node n) {
-            if (lake_of[n] == 0 && (water.codes[n] == no_water_code || code < water.codes[n]))
-                water.codes[n] = code;
-        });
-    });
-}
-
-void separate_and_pour(const Heightfield& original, const LakeOf& lake_of,
-                       std::span<const double> levels, Heightfield& ground, Heightfield& water) {
+std::size_t pour(const Heightfield& original, const LakeOf& lake_of, std::span<const double> levels,
+                 Heightfield& ground, Heightfield& water) {
     struct Codes {
         std::uint16_t water, below, above;
     };
@@ -137,6 +96,7 @@ void separate_and_pour(const Heightfield& original, const LakeOf& lake_of,
                          clamped(std::floor(exact) + 1.0)});
     }
     const int cols = lake_of.size.cols, rows = lake_of.size.rows;
+    std::vector<std::size_t> raised(std::size_t(rows), 0);
     share_out(rows, 0, [&](int first, int last) {
         for (int row = first; row < last; ++row) {
             const std::size_t start = lake_of.index({0, row});
@@ -157,6 +117,7 @@ void separate_and_pour(const Heightfield& original, const LakeOf& lake_of,
                 if ((above[l] | above[col] | above[r] | here[l] | here[r] | below[l] | below[col] |
                      below[r]) == 0)
                     continue;
+                const std::uint16_t was = from[col];
                 for (const std::uint16_t* line : {above, here, below})
                     for (const int c : {l, col, r})
                         if (const unsigned id = line[c]; id != 0) {
@@ -164,9 +125,14 @@ void separate_and_pour(const Heightfield& original, const LakeOf& lake_of,
                             if (wet[col] == no_water_code || codes[id].water < wet[col])
                                 wet[col] = codes[id].water;
                         }
+                raised[std::size_t(row)] += to[col] - was > 1;
             }
         }
     });
+    std::size_t sum = 0;
+    for (const std::size_t count : raised)
+        sum += count;
+    return sum;
 }
 
 } // namespace tarn::dem

@@ -27,20 +27,15 @@ double drawn_level_m(const Heightfield& water, double level_m);
 /// @return how many nodes were dried
 std::size_t part_lakes(LakeOf& lake_of, std::span<const double> levels_m);
 
-/// Rounds ground codes beside the shore to the side that the fill decided.
+/// Writes the lakes into `water` and rounds ground codes beside the shore to the side that the fill
+/// decided; by all cores. A dry node between two lakes carries the lower level, so that nothing can
+/// show above the land, and is raised above the higher one.
+/// @param original  the ground as it was; `ground` becomes it, separated. The two may be one
 /// @param levels_m  of lakes 1, 2, ... as drawn
+/// @param water     of empty_water()
 /// @return the number of dry nodes that had to be raised by more than one code (no-data margins,
 ///         dams that the grid does not show)
-std::size_t separate(Heightfield& ground, const LakeOf& lake_of, std::span<const double> levels_m);
-
-/// Writes the lakes into `water`. A dry node between two lakes carries the lower level, so that
-/// nothing can show above the land.
-void pour(Heightfield& water, const LakeOf& lake_of, std::span<const double> levels_m);
-
-/// separate() and pour() at once, by all cores: for water that moves while somebody looks on.
-/// @param original  the ground as it was; `ground` (of the same size) becomes it, separated
-/// @param water     of empty_water()
-void separate_and_pour(const Heightfield& original, const LakeOf& lake_of,
-                       std::span<const double> levels_m, Heightfield& ground, Heightfield& water);
+std::size_t pour(const Heightfield& original, const LakeOf& lake_of,
+                 std::span<const double> levels_m, Heightfield& ground, Heightfield& water);
 
 } // namespace tarn::dem

@@ -463,15 +463,17 @@ void Renderer::prepare(const scene::View& view) {
     camera_m_ = p;
     locate_camera();
 
-    sky_ = gpu::Texture2D(GL_RGB32F, light.sky.azimuths, light.sky.elevations, 1,
-                          gpu::Filter::linear, "sky");
-    sky_.upload(GL_RGB, GL_FLOAT, light.sky.radiance.data());
-    if (wavy()) {
+    if (sky_made_ != light.sky.radiance || sky_.width_px() != light.sky.azimuths) {
+        sky_made_ = light.sky.radiance;
+        sky_ = gpu::Texture2D(GL_RGB32F, light.sky.azimuths, light.sky.elevations, 1,
+                              gpu::Filter::linear, "sky");
+        sky_.upload(GL_RGB, GL_FLOAT, sky_made_.data());
         soft_sky_ = gpu::Texture2D(gpu::is_software() ? GL_RGB32F : GL_RGBA16F, light.sky.azimuths,
                                    light.sky.elevations, 1, gpu::Filter::linear, "soft sky");
-        soft_sky_.upload(GL_RGB, GL_FLOAT, light.sky.radiance.data());
-        soft_sky_.bind(TARN_TEXTURE_SKY_SOFT);
+        soft_sky_.upload(GL_RGB, GL_FLOAT, sky_made_.data());
     }
+    if (wavy())
+        soft_sky_.bind(TARN_TEXTURE_SKY_SOFT);
     if (radiance_.width_px() != settings.width_px || radiance_.height_px() != settings.height_px) {
         radiance_ = gpu::Texture2D(GL_RGBA32F, settings.width_px, settings.height_px, 1,
                                    gpu::Filter::nearest, "picture");

@@ -166,6 +166,7 @@ private:
     gpu::Buffer view_buffer_, lakes_;
     std::map<std::string, gpu::ComputeProgram> shade_; ///< by air_defines()
     const gpu::ComputeProgram* calm_shade_ = nullptr;  ///< of them, for this picture
+    std::vector<glm::vec3> sky_made_;                  ///< as it is on the GPU
     bool hazy_ = false, whole_sky_ = false, mapped_ = false;
     gpu::Texture2D exposed_, drape_;
     gpu::Texture2D land_shadow_;

@@ -76,6 +76,11 @@ std::optional<double> Scene::water_level_m(double x, double y) const {
     return level;
 }
 
+bool Scene::under_water(const glm::dvec3& place) const {
+    const auto level = water_level_m(place.x, place.y);
+    return level && place.z < *level;
+}
+
 void Scene::validate() const {
     validate_field("ground", ground);
     validate_field("water", water);

@@ -69,6 +69,9 @@ struct Scene {
     /// Water level at a scene position, or nothing where it is dry.
     std::optional<double> water_level_m(double x, double y) const;
 
+    /// Is this place below the level of water that is there?
+    bool under_water(const glm::dvec3& place) const;
+
     /// @throws tarn::Error  if sizes, numbers or lakes do not fit together
     void validate() const;
 };

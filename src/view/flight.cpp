@@ -40,14 +40,15 @@ scene::Camera camera_of(const Pose& pose) {
     return scene::look(pose.position, pose.heading_deg, pose.pitch_deg, pose.fov_deg);
 }
 
-Flight::Flight(const scene::Scene& scene, const Pose& start) : scene_(scene), pose_(start) {
+Flight::Flight(const scene::Scene& scene, const Pose& start)
+    : scene_(scene), bottom_m_(scene::block_bottom_m(scene.ground)), pose_(start) {
     settle();
 }
 
 double Flight::lowest_m(double x, double y) const {
     const Heightfield& g = scene_.ground;
     if (x < g.west_m || x > g.east_m() || y > g.north_m || y < g.south_m())
-        return scene::block_bottom_m(g); // beside the block of earth
+        return bottom_m_; // beside the block of earth
     return g.elevation_m(x, y) + clearance_m;
 }
 
@@ -59,7 +60,7 @@ void Flight::settle() {
     glm::dvec3& p = pose_.position;
     p.x = std::clamp(p.x, g.west_m - reach, g.east_m() + reach);
     p.y = std::clamp(p.y, g.south_m() - reach, g.north_m + reach);
-    p.z = std::clamp(p.z, lowest_m(p.x, p.y), g.max_elevation_m() + reach);
+    p.z = std::clamp(p.z, lowest_m(p.x, p.y), g.upper_bound_m() + reach);
     pose_.pitch_deg = std::clamp(pose_.pitch_deg, -89.5, 89.5);
     pose_.heading_deg = wrap_deg(pose_.heading_deg);
 }

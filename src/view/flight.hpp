@@ -66,6 +66,7 @@ private:
     void settle();
 
     const scene::Scene& scene_;
+    double bottom_m_; ///< of the block of earth
     Pose pose_, from_;
     std::optional<Pose> target_;
     double way_ = 0.0; ///< share of it, [0, 1]

@@ -1,6 +1,7 @@
 #include "view/panels.hpp"
 
 #include "core/text.hpp"
+#include "geo/frame.hpp"
 #include "scene/water_types.hpp"
 
 #include <algorithm>
@@ -337,15 +338,12 @@ bool optional_length(Session& session, const char* label, const char* option, fl
 bool map_panel(Session& session) {
     const LakeRecord& lake = session.scene.lakes.front();
     const auto depth = static_cast<float>(lake.max_depth_m.value_or(50.0));
-    const auto round_125 = [](float v) {
-        const float decade = std::pow(10.0f, std::floor(std::log10(v)));
-        return decade * (v / decade >= 5 ? 5.0f : v / decade >= 2 ? 2.0f : 1.0f);
-    };
     bool changed = optional_length(
         session, "contours", "contours",
-        round_125(float(session.scene.ground.max_elevation_m() - lake.level_m) / 20.0f + 0.1f));
+        float(round_length(std::max(session.scene.ground.upper_bound_m() - lake.level_m, 2.0) /
+                           20.0)));
     changed |= optional_length(session, "depth contours", "depth-contours",
-                               round_125(depth / 10.0f + 0.05f));
+                               float(round_length(std::max(double(depth), 0.5) / 10.0)));
     changed |= optional_length(session, "depth colours", "depth-colours", std::ceil(depth));
     return changed;
 }
@@ -418,8 +416,10 @@ std::optional<ImVec2> on_screen(const scene::Camera& c, const glm::dvec3& place,
 
 void draw_north(const Session& session, ImVec2 middle, float radius) {
     ImDrawList& list = *ImGui::GetForegroundDrawList();
-    // Grid north and true north differ by some minutes of arc; here that is less than a pixel.
-    const double a = -session.flight.pose().heading_deg * 0.017453292519943295;
+    const Pose& pose = session.flight.pose();
+    const double convergence_deg =
+        geo::convergence_deg(session.scene.frame, {pose.position.x, pose.position.y});
+    const double a = -(pose.heading_deg + convergence_deg) * 0.017453292519943295;
     const ImVec2 tip(middle.x + radius * float(std::sin(a)),
                      middle.y - radius * float(std::cos(a)));
     const ImVec2 left(middle.x - 0.35f * radius * float(std::cos(a)),
@@ -440,18 +440,13 @@ void draw_scale(const PanelState& state, const Session& session, ImVec2 size, fl
     const double metre_px =
         double(size.y) / (2.0 * std::tan(0.5 * session.flight.pose().fov_deg * 0.0174532925) *
                           state.pointer->distance_m);
-    const double metres = 160.0 * double(scale) / metre_px;
-    const double decade = std::pow(10.0, std::floor(std::log10(metres)));
-    const double length = decade * (metres / decade >= 5 ? 5 : metres / decade >= 2 ? 2 : 1);
+    const double length = round_length(160.0 * double(scale) / metre_px);
     const auto px = float(length * metre_px);
     const ImVec2 end(size.x - 20 * scale, size.y - 44 * scale);
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     list.AddRectFilled({end.x - px - 1, end.y - 5}, {end.x + 1, end.y + 1}, IM_COL32(0, 0, 0, 160));
     list.AddRectFilled({end.x - px, end.y - 4}, end, IM_COL32(255, 255, 255, 255));
-    const std::string label = length >= 1000 ? fixed(length / 1000, 0) + " km"
-                              : length >= 1  ? fixed(length, 0) + " m"
-                                             : fixed(length * 100, 0) + " cm";
-    const std::string words = label + " at the pointer";
+    const std::string words = length_words(length) + " at the pointer";
     list.AddText({end.x - ImGui::CalcTextSize(words.c_str()).x, end.y - 8 - ImGui::GetFontSize()},
                  IM_COL32(255, 255, 255, 255), words.c_str());
 }
@@ -505,30 +500,13 @@ void draw_measured(Session& session, ImVec2 size) {
     }
 }
 
-void draw_labels(Session& session, const Screen& screen, ImVec2 size) {
+void draw_labels(const PanelState& state) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    const scene::Camera camera = camera_of(session.flight.pose());
-    int asked = 0;
-    for (const Layer& layer : session.layers)
-        for (const Layer::Point& point : layer.points) {
-            if (point.label.empty() || ++asked > 200) // each asks the GPU
-                continue;
-            const double level =
-                session.scene.water_level_m(point.place.x, point.place.y).value_or(-1e9);
-            const glm::dvec3 place(point.place, std::max(level, session.scene.ground.elevation_m(
-                                                                    point.place.x, point.place.y)));
-            const auto at = on_screen(camera, place, size);
-            if (!at || at->x < 0 || at->y < 0 || at->x >= size.x || at->y >= size.y)
-                continue;
-            const double distance = glm::length(place - camera.position);
-            const double met = std::abs(double(screen.distance_at(at->x / size.x, at->y / size.y)));
-            if (met < 0.97 * distance)
-                continue; // behind something
-            list.AddText({at->x + 6, at->y - ImGui::GetFontSize()}, IM_COL32(0, 0, 0, 200),
-                         point.label.c_str());
-            list.AddText({at->x + 5, at->y - ImGui::GetFontSize() - 1},
-                         IM_COL32(255, 255, 255, 255), point.label.c_str());
-        }
+    for (const Label& label : state.labels) {
+        const ImVec2 at(label.x + 5, label.y - ImGui::GetFontSize() - 1);
+        list.AddText({at.x + 1, at.y + 1}, IM_COL32(0, 0, 0, 200), label.text.c_str());
+        list.AddText(at, IM_COL32(255, 255, 255, 255), label.text.c_str());
+    }
 }
 
 void draw_messages(Session& session, ImVec2 size, float scale) {
@@ -641,9 +619,9 @@ Requests draw_panels(Session& session, const Screen& screen, PanelState& state, 
     return asked;
 }
 
-void draw_overlay(Session& session, const Screen& screen, PanelState& state, float scale) {
+void draw_overlay(Session& session, PanelState& state, float scale) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
-    draw_labels(session, screen, size);
+    draw_labels(state);
     draw_north(session, {size.x - 44 * scale, 70 * scale}, 18 * scale);
     draw_scale(state, session, size, scale);
     draw_gauge(session, size, scale);
@@ -657,6 +635,29 @@ void draw_overlay(Session& session, const Screen& screen, PanelState& state, flo
     draw_messages(session, size, scale);
     if (state.help)
         draw_help(state.help);
+}
+
+std::vector<Label> find_labels(const Session& session, const Screen& screen) {
+    std::vector<Label> out;
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    const scene::Camera camera = camera_of(session.flight.pose());
+    int asked = 0;
+    for (const Layer& layer : session.layers)
+        for (const Layer::Point& point : layer.points) {
+            if (point.label.empty() || ++asked > 200) // each asks the GPU
+                continue;
+            const double x = point.place.x, y = point.place.y;
+            const glm::dvec3 place(x, y,
+                                   std::max(session.scene.water_level_m(x, y).value_or(-1e9),
+                                            session.scene.ground.elevation_m(x, y)));
+            const auto at = on_screen(camera, place, size);
+            if (!at || at->x < 0 || at->y < 0 || at->x >= size.x || at->y >= size.y)
+                continue;
+            const double met = std::abs(double(screen.distance_at(at->x / size.x, at->y / size.y)));
+            if (!(met < 0.97 * glm::length(place - camera.position))) // not behind something
+                out.push_back({at->x, at->y, point.label});
+        }
+    return out;
 }
 
 void set_style(float scale) {

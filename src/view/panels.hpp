@@ -16,7 +16,13 @@ struct Requests {
     std::string open; ///< a scene folder or DEM to show next
 };
 
-/// Size of the saved picture and what else the panels keep between frames.
+/// Of a point of a layer, where it is in the window.
+struct Label {
+    float x = 0, y = 0;
+    std::string text;
+};
+
+/// What the panels keep between frames.
 struct PanelState {
     bool shown = true, help = false;
     double frames_per_s = 0.0;
@@ -26,13 +32,17 @@ struct PanelState {
     std::optional<Reading> pointer;
     bool pointer_known = false; ///< else nothing has been drawn there yet
     bool level_dragged = false;
+    std::vector<Label> labels;
 };
 
 /// The side panel.
 Requests draw_panels(Session& session, const Screen& screen, PanelState& state, float scale);
 
 /// North arrow, scale bar, depth gauge, measured lines, layers, pointer, messages, keys.
-void draw_overlay(Session& session, const Screen& screen, PanelState& state, float scale);
+void draw_overlay(Session& session, PanelState& state, float scale);
+
+/// Labels of points that nothing hides; asks the GPU for each.
+std::vector<Label> find_labels(const Session& session, const Screen& screen);
 
 /// One colour scheme and sizes for all.
 void set_style(float scale);

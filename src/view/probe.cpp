@@ -46,8 +46,8 @@ std::optional<glm::dvec3> first_met(const scene::Scene& scene, const glm::dvec3&
     const glm::dvec3 d = glm::normalize(direction);
     // Where the ray is over the field and not above all of it.
     double from = 0.0, to = 1e9;
-    const glm::dvec3 low(g.west_m, g.south_m(), g.min_elevation_m() - 1.0),
-        high(g.east_m(), g.north_m, g.max_elevation_m() + 1.0);
+    const glm::dvec3 low(g.west_m, g.south_m(), g.lower_bound_m() - 1.0),
+        high(g.east_m(), g.north_m, g.upper_bound_m() + 1.0);
     for (int k = 0; k < 3; ++k) {
         if (d[k] == 0.0) {
             if (eye[k] < low[k] || eye[k] > high[k])
@@ -105,7 +105,7 @@ std::optional<Reading> read_place(const scene::Scene& scene, const glm::dvec3& e
     glm::dvec3 below(0, 0, -1);
     if (const double flat = std::hypot(d.x, d.y); flat > 1e-9)
         below = {d.x / flat * sine, d.y / flat * sine, -cosine};
-    const double most = (*out.level_m - g.min_elevation_m() + 1.0) / cosine;
+    const double most = (*out.level_m - g.lower_bound_m() + 1.0) / cosine;
     if (const auto bed = first_ground(scene, out.point, below, most)) {
         const double depth = std::max(0.0, *out.level_m - bed->z);
         out.seen_depth_m = depth;

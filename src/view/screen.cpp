@@ -43,8 +43,7 @@ bool Screen::update(scene::View view, const scene::Scene& scene, int width_px, i
         renderer_.prepare(view);
         renderer_.draw_rows(0, 1, 0, view.settings.height_px);
         glFinish();
-        frame_ms_ = now_ms() - start;
-        pacing_.took(frame_ms_);
+        pacing_.took(now_ms() - start);
         meter(scene, view, 1.0, exposure, seconds);
         display(1.0);
         stale_ = fine_ = false;

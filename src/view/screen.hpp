@@ -35,7 +35,6 @@ public:
     double scale() const { return shown_scale_; }
     int samples_done() const { return shown_samples_; }
     double exposure() const { return exposure_; }
-    double frame_ms() const { return frame_ms_; } ///< of the last coarse picture
     /// Distance met at a place of the window, both in [0, 1]; < 0 water, 1e9 nothing, NaN where it
     /// is not known yet.
     float distance_at(double x, double y) const;
@@ -54,7 +53,7 @@ private:
     bool software_, stale_ = true, settled_ = false, first_ = true;
     int width_px_ = 0, height_px_ = 0;
     int sample_ = 0, samples_ = 0, next_row_ = 0, shown_samples_ = 0;
-    double shown_scale_ = 0.0, exposure_ = 1.0, wanted_exposure_ = 1.0, frame_ms_ = 0.0;
+    double shown_scale_ = 0.0, exposure_ = 1.0, wanted_exposure_ = 1.0;
     double row_ms_ = 0.0; ///< of a row at full resolution
     bool fine_ = false;   ///< the renderer is prepared for the finished picture
 };

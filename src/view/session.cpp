@@ -20,13 +20,8 @@ Session::Session(scene::Scene& s, const Services& v, Options options)
         if (lake.id == int(number("lake", 1)))
             level_m_ = lake.level_m;
     picture_samples = int(number("samples", picture_samples));
-    const std::string paths = option("layers");
-    for (std::size_t from = 0; from < paths.size();) {
-        const std::size_t end = std::min(paths.find(':', from), paths.size());
-        if (end > from)
-            add_layer(paths.substr(from, end - from));
-        from = end + 1;
-    }
+    for (const std::string& path : split(option("layers"), ':'))
+        add_layer(path);
 }
 
 void Session::open_levels() {

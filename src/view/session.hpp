@@ -71,6 +71,7 @@ public:
     bool advance(double seconds);
 
     // --- the level -------------------------------------------------------------------------------
+    bool opening_levels() const { return opening_.valid(); }
     /// Begins to follow the water, on a thread of its own.
     void open_levels();
     LevelControl* levels() const { return levels_.get(); } ///< nothing until it is ready

@@ -216,10 +216,12 @@ private:
     }
     void frame();
     void keys(double seconds);
-    void mouse(double seconds);
+    void mouse();
     void read_pointer();
     void save_picture();
-    void log_frame(double began_s, bool drawn);
+    void log_frame(double began_s, bool first);
+    void take_changes(double now);
+    bool draw(bool time_passes, double now, int width, int height, double seconds);
     bool show_progress(const std::string& what, double share);
     ImTextureID screen_image() const;
     void show();
@@ -362,7 +364,7 @@ void App::keys(double seconds) {
     moving_ |= push.any() || session_.flight.under_way();
 }
 
-void App::mouse(double) {
+void App::mouse() {
     const ImGuiIO& io = ImGui::GetIO();
     const bool here = !io.WantCaptureMouse && io.DisplaySize.x > 0 && io.DisplaySize.y > 0;
     const double x = io.MousePos.x / io.DisplaySize.x, y = io.MousePos.y / io.DisplaySize.y;
@@ -510,12 +512,7 @@ void App::dropped(int count, const char** paths) {
     }
 }
 
-void App::log_frame(double began_s, bool drawn) {
-    const bool first = drawn && !shown_once_;
-    if (first) {
-        shown_once_ = true;
-        session_.open_levels(); // with the cores to itself until here
-    }
+void App::log_frame(double began_s, bool first) {
     if (!log_.on())
         return;
     const double end = now_s(), t = end - started_s_;
@@ -531,7 +528,6 @@ void App::log_frame(double began_s, bool drawn) {
     }
     if (was_moving_ && !moving_) {
         const Pose& p = session_.flight.pose();
-        const auto water = session_.scene.water_level_m(p.position.x, p.position.y);
         log_.write(t, "pose",
                    {{"x", p.position.x},
                     {"y", p.position.y},
@@ -539,7 +535,7 @@ void App::log_frame(double began_s, bool drawn) {
                     {"heading_deg", p.heading_deg},
                     {"pitch_deg", p.pitch_deg},
                     {"ground_m", session_.scene.ground.elevation_m(p.position.x, p.position.y)},
-                    {"under_water", water && p.position.z < *water ? 1.0 : 0.0}});
+                    {"under_water", session_.scene.under_water(p.position) ? 1.0 : 0.0}});
     }
     for (const Message& m : session_.take_said())
         log_.write(t, m.error ? "complaint" : "message", {}, m.text);
@@ -547,42 +543,8 @@ void App::log_frame(double began_s, bool drawn) {
         log_.write(t, "gl error", {{"code", double(error)}});
 }
 
-void App::frame() {
-    int width = 0, height = 0;
-    // Nothing to draw and nobody there: wait for somebody.
-    const bool hidden = glfwGetWindowAttrib(window_.get(), GLFW_ICONIFIED) != 0;
-    if (hidden || (idle_frames_ > 3 && session_.levels() && !cones_.busy()))
-        glfwWaitEventsTimeout(hidden ? 0.2 : 0.1);
-    else
-        glfwPollEvents();
-    glfwGetFramebufferSize(window_.get(), &width, &height);
-    const double now = now_s();
-    const double seconds = std::clamp(now - last_s_, 0.0, 0.25);
-    last_s_ = now;
-    if (width < 1 || height < 1 || hidden) {
-        session_.advance(seconds);
-        return;
-    }
-    ImGui_ImplOpenGL3_NewFrame();
-    ImGui_ImplGlfw_NewFrame();
-    ImGui::NewFrame();
-    moving_ = false;
-    keys(seconds);
-    pressed_.clear();
-    mouse(seconds);
-    changed_ |= session_.advance(seconds);
-    moving_ |= session_.play_sun || (session_.play_waves && !session_.view.waves.calm());
-    const Requests asked = draw_panels(session_, screen_, state_, scale_);
-    changed_ |= asked.view_changed;
-    save_asked_ |= asked.save_picture;
-    if (!asked.open.empty()) {
-        if (std::filesystem::exists(asked.open)) {
-            next_ = asked.open;
-            glfwSetWindowShouldClose(window_.get(), GLFW_TRUE);
-        } else {
-            session_.complain(asked.open + ": no such scene or file");
-        }
-    }
+/// Heights, maps and cone maps that others have made go to the GPU.
+void App::take_changes(double now) {
     if (session_.take_scene_changed()) {
         const double before = now_s();
         renderer_.scene_changed(!state_.level_dragged);
@@ -607,36 +569,87 @@ void App::frame() {
         ; // the picture is the same, only faster from here on
     else if (cones_wanted && renderer_.needs_cone_maps() && !cones_.busy() && now - level_s_ > 0.3)
         cones_.start(session_.scene, renderer_.water_lift_m());
+}
+
+/// @return whether the screen shows something new
+bool App::draw(bool time_passes, double now, int width, int height, double seconds) {
     if (moving_)
         moved_s_ = now;
+    if (time_passes) {
+        scene::View view = view_now();
+        view.settings.width_px = width;
+        view.settings.height_px = height;
+        state_.pass_ms = screen_.time_passes(view);
+    }
+    if (changed_)
+        screen_.changed();
+    std::optional<double> exposure;
+    if (const double fixed_exposure = session_.number("exposure", 0.0); fixed_exposure > 0.0)
+        exposure = fixed_exposure;
+    return screen_.update(view_now(), session_.scene, width, height, now - moved_s_ < 0.15,
+                          exposure, seconds);
+}
+
+void App::frame() {
+    int width = 0, height = 0;
+    // Nothing to draw and nobody there: wait for somebody.
+    const bool hidden = glfwGetWindowAttrib(window_.get(), GLFW_ICONIFIED) != 0;
+    if (hidden || (idle_frames_ > 3 && !session_.opening_levels() && !cones_.busy()))
+        glfwWaitEventsTimeout(hidden ? 0.2 : 0.1);
+    else
+        glfwPollEvents();
+    glfwGetFramebufferSize(window_.get(), &width, &height);
+    const double now = now_s();
+    const double seconds = std::clamp(now - last_s_, 0.0, 0.25);
+    last_s_ = now;
+    if (width < 1 || height < 1 || hidden) {
+        session_.advance(seconds);
+        return;
+    }
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    moving_ = false;
+    keys(seconds);
+    pressed_.clear();
+    mouse();
+    changed_ |= session_.advance(seconds);
+    moving_ |= session_.play_sun || (session_.play_waves && !session_.view.waves.calm());
+    const Requests asked = draw_panels(session_, screen_, state_, scale_);
+    changed_ |= asked.view_changed;
+    save_asked_ |= asked.save_picture;
+    if (!asked.open.empty()) {
+        if (std::filesystem::exists(asked.open)) {
+            next_ = asked.open;
+            glfwSetWindowShouldClose(window_.get(), GLFW_TRUE);
+        } else {
+            session_.complain(asked.open + ": no such scene or file");
+        }
+    }
     bool drawn = false;
     try {
-        if (asked.time_passes) {
-            scene::View view = view_now();
-            view.settings.width_px = width;
-            view.settings.height_px = height;
-            state_.pass_ms = screen_.time_passes(view);
-        }
-        if (changed_)
-            screen_.changed();
-        std::optional<double> exposure;
-        if (const double fixed_exposure = session_.number("exposure", 0.0); fixed_exposure > 0.0)
-            exposure = fixed_exposure;
-        drawn = screen_.update(view_now(), session_.scene, width, height, now - moved_s_ < 0.15,
-                               exposure, seconds);
-    } catch (const Error& error) {
+        take_changes(now);
+        drawn = draw(asked.time_passes, now, width, height, seconds);
+    } catch (const std::exception& error) {
         session_.complain(error.what());
     }
     changed_ = false;
     if (drawn || ImGui::GetIO().MouseDelta.x != 0.0f || ImGui::GetIO().MouseDelta.y != 0.0f)
         read_pointer();
+    if (drawn)
+        state_.labels = find_labels(session_, screen_);
     const bool settled = screen_.finished() && !moving_ && session_.messages.empty();
     idle_frames_ = settled && !ImGui::IsAnyItemActive() ? idle_frames_ + 1 : 0;
 
     ImGui::GetBackgroundDrawList()->AddImage(screen_image(), {0, 0}, ImGui::GetIO().DisplaySize);
-    draw_overlay(session_, screen_, state_, scale_);
+    draw_overlay(session_, state_, scale_);
     show();
-    log_frame(now, drawn);
+    const bool first = drawn && !shown_once_;
+    if (first) {
+        shown_once_ = true;
+        session_.open_levels(); // until here the cores had enough to do
+    }
+    log_frame(now, first);
     was_moving_ = moving_;
     if (std::exchange(save_asked_, false)) // between two frames
         save_picture();

@@ -70,9 +70,8 @@ Poured pour_lake(const Grid<float>& z, double spacing_m, const LakeOf& lakes, do
     out.ground = quantise(z.values, z.size, spacing_m, 4, std::span(&level_m, 1));
     out.ground.west_m = -0.5 * (z.size.cols - 1) * spacing_m;
     out.ground.north_m = 0.5 * (z.size.rows - 1) * spacing_m;
-    separate(out.ground, lakes, std::span(&level_m, 1));
     out.water = empty_water(out.ground, std::span(&level_m, 1));
-    pour(out.water, lakes, std::span(&level_m, 1));
+    pour(out.ground, lakes, std::span(&level_m, 1), out.ground, out.water);
     return out;
 }
 
@@ -446,9 +445,9 @@ TEST(Water, ShowsInTheLakeAndNowhereElse) {
         const LakeOf lake = filled(z, highest, basins[0].seed);
         Heightfield ground = quantise(z.values, z.size, 10.0, 4);
         const double levels[] = {level};
-        RC_ASSERT(separate(ground, lake, levels) == 0u); // a filled lake needs no dams
         Heightfield water = empty_water(ground, levels);
-        pour(water, lake, levels);
+        // A filled lake needs no dams.
+        RC_ASSERT(pour(ground, lake, levels, ground, water) == 0u);
         for (int r = 0; r + 1 < rows; ++r)
             for (int c = 0; c + 1 < cols; ++c) {
                 const Node corner[4] = {{c, r}, {c + 1, r}, {c, r + 1}, {c + 1, r + 1}};
@@ -484,9 +483,9 @@ TEST(Water, SeveralLakesKeepTheirLevelsToAMillimetre) {
                 z[{c, r}] = float(levels[i] - 5.0);
                 lakes[{c, r}] = std::uint16_t(i + 1);
             }
-    const Heightfield ground = quantise(z.values, z.size, 30.0, 4);
+    Heightfield ground = quantise(z.values, z.size, 30.0, 4);
     Heightfield water = empty_water(ground, levels);
-    pour(water, lakes, levels);
+    pour(ground, lakes, levels, ground, water);
     for (int i = 0; i < 5; ++i) {
         EXPECT_NEAR(water.elevation_m(Node{12 * i + 5, 5}), levels[i], 1e-3);
         EXPECT_NEAR(water.elevation_m(Node{12 * i + 2, 5}), levels[i], 1e-3); // the dry margin
@@ -508,10 +507,9 @@ TEST(Water, LakesThatTouchArePartedAndNoWaterStandsAgainstTheLower) {
     EXPECT_EQ(lakes[Node(6, 2)], 0);
     EXPECT_EQ(lakes[Node(7, 2)], 2);
     Heightfield ground = quantise(z.values, z.size, 10.0, 4);
-    EXPECT_EQ(separate(ground, lakes, levels), 4u); // the wall between them
-    EXPECT_GT(ground.elevation_m(Node{6, 2}), 25.0);
     Heightfield water = empty_water(ground, levels);
-    pour(water, lakes, levels);
+    EXPECT_EQ(pour(ground, lakes, levels, ground, water), 4u); // the wall between them
+    EXPECT_GT(ground.elevation_m(Node{6, 2}), 25.0);
     EXPECT_NEAR(water.elevation_m(Node{6, 2}), 15.0, 1e-3);
 }
 
@@ -631,8 +629,7 @@ struct Basins {
         }
         ground = quantise(z.values, z.size, 5.0, 4, levels);
         water = empty_water(ground, levels);
-        separate(ground, lake_of, levels);
-        pour(water, lake_of, levels);
+        pour(ground, lake_of, levels, ground, water);
     }
     Refill refill(int id) const { return Refill(z, ground, water, frame, lakes, id, Progress{}); }
 };
