@@ -52,7 +52,8 @@ bool choice(Session& session, const char* label, const char* option,
     return changed;
 }
 
-void plot_curve(const Session& session, const char* label, const char* unit, bool volume) {
+/// Area or volume over the level.
+void plot_curve(const Session& session, bool volume) {
     const auto& curve = session.curve();
     if (curve.empty() || (volume && !curve.front().volume_m3))
         return;
@@ -60,11 +61,11 @@ void plot_curve(const Session& session, const char* label, const char* unit, boo
     for (const Figures& f : curve)
         values.push_back(float(volume ? *f.volume_m3 / 1e6 : f.area_m2 / 1e6));
     const auto& now = *session.figures();
-    const double value = volume ? *now.volume_m3 / 1e6 : now.area_m2 / 1e6;
     const float most = *std::max_element(values.begin(), values.end());
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const ImVec2 size(ImGui::GetContentRegionAvail().x, 64.0f * ImGui::GetFontSize() / 15.0f);
-    const std::string over = std::string(label) + " " + fixed(value, 3) + " " + unit;
+    const std::string over =
+        volume ? "volume " + volume_words(*now.volume_m3) : "area " + area_words(now.area_m2);
     ImGui::PlotLines(volume ? "##volume" : "##area", values.data(), int(values.size()), 0,
                      over.c_str(), 0.0f, most, size);
     // Where the level is now, and where it spills.
@@ -121,10 +122,14 @@ void water_panel(Session& session, PanelState& state) {
                                "spills: above %.2f m water leaves the data", *levels.spill_m());
         else if (levels.spill_m())
             ImGui::TextDisabled("may rise to %.2f m", *levels.spill_m());
-        plot_curve(session, "area", "km2", false);
-        plot_curve(session, "volume", "million m3", true);
+        plot_curve(session, false);
+        plot_curve(session, true);
+        if (!session.curve().empty())
+            ImGui::TextDisabled("over %.0f to %.0f m; yellow: now, red: spills",
+                                session.curve().front().level_m, session.curve().back().level_m);
     }
-    ImGui::TextDisabled("refilled in %.0f ms", session.last_fill_ms());
+    if (session.last_fill_ms() > 0.0)
+        ImGui::TextDisabled("refilled in %.0f ms", session.last_fill_ms());
 }
 
 bool sun_panel(Session& session) {
@@ -402,165 +407,6 @@ void picture_panel(Session& session, Requests& asked) {
     }
 }
 
-/// Where a place of the scene is on the screen, if it is before the camera.
-std::optional<ImVec2> on_screen(const scene::Camera& c, const glm::dvec3& place, ImVec2 size) {
-    const glm::dvec3 to = place - c.position;
-    const double depth = glm::dot(to, c.forward);
-    if (depth <= 1e-3)
-        return std::nullopt;
-    const double half = std::tan(0.5 * c.fov_deg * 0.017453292519943295);
-    const double x = glm::dot(to, c.right) / (depth * half * size.x / size.y),
-                 y = glm::dot(to, c.up) / (depth * half);
-    return ImVec2(size.x * float(0.5 + 0.5 * x), size.y * float(0.5 - 0.5 * y));
-}
-
-void draw_north(const Session& session, ImVec2 middle, float radius) {
-    ImDrawList& list = *ImGui::GetForegroundDrawList();
-    const Pose& pose = session.flight.pose();
-    const double convergence_deg =
-        geo::convergence_deg(session.scene.frame, {pose.position.x, pose.position.y});
-    const double a = -(pose.heading_deg + convergence_deg) * 0.017453292519943295;
-    const ImVec2 tip(middle.x + radius * float(std::sin(a)),
-                     middle.y - radius * float(std::cos(a)));
-    const ImVec2 left(middle.x - 0.35f * radius * float(std::cos(a)),
-                      middle.y - 0.35f * radius * float(std::sin(a)));
-    const ImVec2 right(2 * middle.x - left.x, 2 * middle.y - left.y);
-    const ImVec2 tail(2 * middle.x - tip.x, 2 * middle.y - tip.y);
-    list.AddCircleFilled(middle, radius * 1.15f, IM_COL32(0, 0, 0, 90), 32);
-    list.AddTriangleFilled(tip, left, right, IM_COL32(225, 80, 70, 255));
-    list.AddTriangleFilled(tail, left, right, IM_COL32(235, 235, 235, 255));
-    list.AddText({middle.x - 4, middle.y - radius * 1.15f - ImGui::GetFontSize()},
-                 IM_COL32(255, 255, 255, 255), "N");
-}
-
-void draw_scale(const PanelState& state, const Session& session, ImVec2 size, float scale) {
-    // At what the pointer is on, else there is none.
-    if (!state.pointer)
-        return;
-    const double metre_px =
-        double(size.y) / (2.0 * std::tan(0.5 * session.flight.pose().fov_deg * 0.0174532925) *
-                          state.pointer->distance_m);
-    const double length = round_length(160.0 * double(scale) / metre_px);
-    const auto px = float(length * metre_px);
-    const ImVec2 end(size.x - 20 * scale, size.y - 44 * scale);
-    ImDrawList& list = *ImGui::GetForegroundDrawList();
-    list.AddRectFilled({end.x - px - 1, end.y - 5}, {end.x + 1, end.y + 1}, IM_COL32(0, 0, 0, 160));
-    list.AddRectFilled({end.x - px, end.y - 4}, end, IM_COL32(255, 255, 255, 255));
-    const std::string words = length_words(length) + " at the pointer";
-    list.AddText({end.x - ImGui::CalcTextSize(words.c_str()).x, end.y - 8 - ImGui::GetFontSize()},
-                 IM_COL32(255, 255, 255, 255), words.c_str());
-}
-
-void draw_gauge(const Session& session, ImVec2 size, float scale) {
-    const glm::dvec3& p = session.flight.pose().position;
-    const auto level = session.scene.water_level_m(p.x, p.y);
-    ImDrawList& list = *ImGui::GetForegroundDrawList();
-    std::string words;
-    if (level && p.z < *level)
-        words = fixed(*level - p.z, 2) + " m deep, bed " +
-                fixed(p.z - session.scene.ground.elevation_m(p.x, p.y), 1) + " m below";
-    else
-        words = fixed(p.z, 1) + " m, " +
-                fixed(p.z - level.value_or(session.scene.ground.elevation_m(p.x, p.y)), 1) +
-                (level ? " m above the water" : " m above the ground");
-    const ImVec2 extent = ImGui::CalcTextSize(words.c_str());
-    const ImVec2 at(size.x - extent.x - 20 * scale, 14 * scale);
-    list.AddRectFilled({at.x - 6, at.y - 3}, {at.x + extent.x + 6, at.y + extent.y + 3},
-                       IM_COL32(0, 0, 0, 110), 4.0f);
-    list.AddText(at, IM_COL32(255, 255, 255, 255), words.c_str());
-    if (level && p.z < *level) { // a bar from the surface down to the bed, with where one is
-        const double bed = session.scene.ground.elevation_m(p.x, p.y);
-        const double share = (*level - p.z) / std::max(*level - bed, 0.01);
-        const float x = size.x - 28 * scale, top = 120 * scale, bottom = size.y - 120 * scale;
-        list.AddRectFilled({x - 3, top}, {x + 3, bottom}, IM_COL32(20, 60, 90, 160));
-        const float y = top + (bottom - top) * float(std::clamp(share, 0.0, 1.0));
-        list.AddTriangleFilled({x - 12, y - 6}, {x - 12, y + 6}, {x - 2, y},
-                               IM_COL32(255, 230, 140, 255));
-        list.AddText({x - 24, top - ImGui::GetFontSize() - 2}, IM_COL32(255, 255, 255, 255), "0 m");
-        const std::string deepest = fixed(*level - bed, 1) + " m";
-        list.AddText({x - 24, bottom + 2}, IM_COL32(255, 255, 255, 255), deepest.c_str());
-    }
-}
-
-void draw_measured(Session& session, ImVec2 size) {
-    ImDrawList& list = *ImGui::GetForegroundDrawList();
-    const scene::Camera camera = camera_of(session.flight.pose());
-    std::vector<glm::dvec3> places = session.measured;
-    if (session.measuring == Session::Measuring::polygon && places.size() > 2)
-        places.push_back(places.front());
-    std::optional<ImVec2> last;
-    for (const glm::dvec3& place : places) {
-        const auto here = on_screen(camera, place, size);
-        if (here) {
-            list.AddCircleFilled(*here, 4.0f, IM_COL32(255, 210, 90, 255));
-            if (last)
-                list.AddLine(*last, *here, IM_COL32(255, 210, 90, 230), 2.0f);
-        }
-        last = here;
-    }
-}
-
-void draw_labels(const PanelState& state) {
-    ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    for (const Label& label : state.labels) {
-        const ImVec2 at(label.x + 5, label.y - ImGui::GetFontSize() - 1);
-        list.AddText({at.x + 1, at.y + 1}, IM_COL32(0, 0, 0, 200), label.text.c_str());
-        list.AddText(at, IM_COL32(255, 255, 255, 255), label.text.c_str());
-    }
-}
-
-void draw_messages(Session& session, ImVec2 size, float scale) {
-    float y = size.y - 70 * scale;
-    for (auto m = session.messages.rbegin(); m != session.messages.rend(); ++m) {
-        const float wrap = std::min(size.x * 0.6f, 700 * scale);
-        const ImVec2 extent = ImGui::CalcTextSize(m->text.c_str(), nullptr, false, wrap);
-        y -= extent.y + 14;
-        const ImVec2 at((size.x - extent.x) / 2, y);
-        ImDrawList& list = *ImGui::GetForegroundDrawList();
-        list.AddRectFilled({at.x - 10, at.y - 5}, {at.x + extent.x + 10, at.y + extent.y + 5},
-                           m->error ? IM_COL32(120, 30, 25, 225) : IM_COL32(20, 30, 40, 200), 6.0f);
-        list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at, IM_COL32(255, 255, 255, 255),
-                     m->text.c_str(), nullptr, wrap);
-    }
-}
-
-void draw_help(bool& open) {
-    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing,
-                            {0.5f, 0.5f});
-    if (ImGui::Begin("Keys and mouse", &open,
-                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse |
-                         ImGuiWindowFlags_NoSavedSettings)) {
-        static const char* keys[][2] = {{"W A S D", "fly forward, left, back, right"},
-                                        {"E / Q, Page up / down", "up, down"},
-                                        {"Shift / Ctrl", "four times as fast / a quarter"},
-                                        {"left button", "go round the point under the pointer"},
-                                        {"right button", "look around"},
-                                        {"wheel", "nearer, farther"},
-                                        {"double click", "fly to a point"},
-                                        {"1 ... 9", "cameras of the scene"},
-                                        {"Ctrl Z / Ctrl Y", "take back a movement / do it again"},
-                                        {"[ / ]", "water down, up by .1 m (Shift: 1 m)"},
-                                        {"Space", "water moves or stands still"},
-                                        {"Tab", "panel on, off"},
-                                        {"F1", "these keys"},
-                                        {"F12", "save a picture"},
-                                        {"Ctrl C", "copy as command"},
-                                        {"Ctrl Q", "close"},
-                                        {"Esc", "leave off measuring"}};
-        if (ImGui::BeginTable("keys", 2)) {
-            for (const auto& row : keys) {
-                ImGui::TableNextRow();
-                ImGui::TableNextColumn();
-                ImGui::TextUnformatted(row[0]);
-                ImGui::TableNextColumn();
-                ImGui::TextUnformatted(row[1]);
-            }
-            ImGui::EndTable();
-        }
-    }
-    ImGui::End();
-}
-
 } // namespace
 
 Requests draw_panels(Session& session, const Screen& screen, PanelState& state, float scale) {
@@ -617,47 +463,6 @@ Requests draw_panels(Session& session, const Screen& screen, PanelState& state, 
     }
     ImGui::End();
     return asked;
-}
-
-void draw_overlay(Session& session, PanelState& state, float scale) {
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    draw_labels(state);
-    draw_north(session, {size.x - 44 * scale, 70 * scale}, 18 * scale);
-    draw_scale(state, session, size, scale);
-    draw_gauge(session, size, scale);
-    draw_measured(session, size);
-    ImDrawList& list = *ImGui::GetForegroundDrawList();
-    list.AddRectFilled({0, size.y - 26 * scale}, size, IM_COL32(0, 0, 0, 150));
-    const std::string words = state.pointer         ? describe(*state.pointer)
-                              : state.pointer_known ? std::string("sky")
-                                                    : std::string("...");
-    list.AddText({10 * scale, size.y - 22 * scale}, IM_COL32(255, 255, 255, 255), words.c_str());
-    draw_messages(session, size, scale);
-    if (state.help)
-        draw_help(state.help);
-}
-
-std::vector<Label> find_labels(const Session& session, const Screen& screen) {
-    std::vector<Label> out;
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    const scene::Camera camera = camera_of(session.flight.pose());
-    int asked = 0;
-    for (const Layer& layer : session.layers)
-        for (const Layer::Point& point : layer.points) {
-            if (point.label.empty() || ++asked > 200) // each asks the GPU
-                continue;
-            const double x = point.place.x, y = point.place.y;
-            const glm::dvec3 place(x, y,
-                                   std::max(session.scene.water_level_m(x, y).value_or(-1e9),
-                                            session.scene.ground.elevation_m(x, y)));
-            const auto at = on_screen(camera, place, size);
-            if (!at || at->x < 0 || at->y < 0 || at->x >= size.x || at->y >= size.y)
-                continue;
-            const double met = std::abs(double(screen.distance_at(at->x / size.x, at->y / size.y)));
-            if (!(met < 0.97 * glm::length(place - camera.position))) // not behind something
-                out.push_back({at->x, at->y, point.label});
-        }
-    return out;
 }
 
 void set_style(float scale) {

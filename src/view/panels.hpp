@@ -1,5 +1,5 @@
 #pragma once
-/// @file panels.hpp  What stands at the side of the picture and over it.
+/// @file panels.hpp  What stands at the side of the picture.
 #include "view/screen.hpp"
 #include "view/session.hpp"
 
@@ -37,12 +37,6 @@ struct PanelState {
 
 /// The side panel.
 Requests draw_panels(Session& session, const Screen& screen, PanelState& state, float scale);
-
-/// North arrow, scale bar, depth gauge, measured lines, layers, pointer, messages, keys.
-void draw_overlay(Session& session, PanelState& state, float scale);
-
-/// Labels of points that nothing hides; asks the GPU for each.
-std::vector<Label> find_labels(const Session& session, const Screen& screen);
 
 /// One colour scheme and sizes for all.
 void set_style(float scale);

@@ -76,11 +76,11 @@ std::optional<glm::dvec3> first_met(const scene::Scene& scene, const glm::dvec3&
 
 std::optional<Reading> read_place(const scene::Scene& scene, const glm::dvec3& eye,
                                   const glm::dvec3& direction, double distance) {
-    if (!std::isfinite(distance) || distance == 0.0 || std::abs(distance) >= 0.99e9)
+    if (!(distance > 0.0 && distance < 0.99e9))
         return std::nullopt;
     const glm::dvec3 d = glm::normalize(direction);
     Reading out;
-    out.distance_m = std::abs(distance);
+    out.distance_m = distance;
     out.point = eye + d * out.distance_m;
     const Heightfield& g = scene.ground;
     const double x = out.point.x, y = out.point.y;
@@ -97,8 +97,7 @@ std::optional<Reading> read_place(const scene::Scene& scene, const glm::dvec3& e
     if (scene.lake_at_level(*out.level_m).bed == Bed::unknown)
         return out;
     out.depth_m = std::max(0.0, *out.level_m - out.ground_m);
-    const bool from_above = distance < 0.0 && eye.z > *out.level_m && d.z < 0.0;
-    if (!from_above)
+    if (!(eye.z > *out.level_m && d.z < 0.0)) // from above, what is met over a bed is the surface
         return out;
     const double sine = std::hypot(d.x, d.y) / scene.optics.index;
     const double cosine = std::sqrt(1.0 - sine * sine);

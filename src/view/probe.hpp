@@ -27,7 +27,7 @@ struct Reading {
 
 /// @param eye        the camera's place
 /// @param direction  of the line of sight, any length
-/// @param distance   to what it meets first, as the renderer gives it: < 0 water, > 0 ground
+/// @param distance   to what it meets first, surface or ground, as pictures give it; 1e9: nothing
 /// @return           nothing if it meets neither
 std::optional<Reading> read_place(const scene::Scene& scene, const glm::dvec3& eye,
                                   const glm::dvec3& direction, double distance);

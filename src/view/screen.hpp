@@ -35,8 +35,8 @@ public:
     double scale() const { return shown_scale_; }
     int samples_done() const { return shown_samples_; }
     double exposure() const { return exposure_; }
-    /// Distance met at a place of the window, both in [0, 1]; < 0 water, 1e9 nothing, NaN where it
-    /// is not known yet.
+    /// Distance met at a place of the window, both in [0, 1]; 1e9 nothing, NaN where it is not
+    /// known yet.
     float distance_at(double x, double y) const;
 
     /// Time of each pass of one whole sample, finish to finish [ms], in order. Draws it.

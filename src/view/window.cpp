@@ -1,10 +1,12 @@
 #include "view/window.hpp"
 
-#include "core/cone_map.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
 #include "gpu/gl.hpp"
 #include "render/renderer.hpp"
+#include "view/cone_maker.hpp"
+#include "view/desktop.hpp"
+#include "view/overlay.hpp"
 #include "view/panels.hpp"
 #include "view/screen.hpp"
 #include "view/session.hpp"
@@ -26,146 +28,10 @@ namespace tarn::view {
 
 namespace {
 
-std::string glfw_error() {
-    const char* words = nullptr;
-    glfwGetError(&words);
-    return words ? words : "no reason given";
-}
-
-/// GLFW's library and one window with a current context, both gone at the end.
-class GlfwWindow {
-public:
-    explicit GlfwWindow(const WindowSettings& settings) {
-        if (!glfwInit())
-            throw Error("no window can be opened (" + glfw_error() + ")",
-                        "without a display use tarn render and tarn sweep");
-        try {
-            open(settings);
-        } catch (...) {
-            glfwTerminate();
-            throw;
-        }
-    }
-    ~GlfwWindow() {
-        glfwDestroyWindow(window_);
-        glfwTerminate();
-    }
-    GlfwWindow(const GlfwWindow&) = delete;
-    GlfwWindow& operator=(const GlfwWindow&) = delete;
-    GLFWwindow* get() const { return window_; }
-
-private:
-    void open(const WindowSettings& settings) {
-        std::string tried;
-        // The platform's own context, or EGL's if there is no other.
-        for (const int api : {GLFW_NATIVE_CONTEXT_API, GLFW_EGL_CONTEXT_API}) {
-            if (settings.egl && api != GLFW_EGL_CONTEXT_API)
-                continue;
-            glfwWindowHint(GLFW_CONTEXT_CREATION_API, api);
-            glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
-            glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
-            glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-            glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-            glfwWindowHintString(GLFW_X11_CLASS_NAME, "tarn");
-            glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "tarn");
-            window_ = glfwCreateWindow(settings.width_px, settings.height_px,
-                                       settings.title.c_str(), nullptr, nullptr);
-            if (window_)
-                break;
-            tried += (tried.empty() ? "" : "; ") +
-                     std::string(api == GLFW_EGL_CONTEXT_API ? "EGL: " : "native: ") + glfw_error();
-        }
-        if (!window_)
-            throw Error("no window with OpenGL 4.5 can be opened (" + tried + ")",
-                        "run tarn doctor; without a display use tarn render and tarn sweep");
-        glfwMakeContextCurrent(window_);
-        glfwSwapInterval(1);
-    }
-    GLFWwindow* window_ = nullptr;
-};
-
-/// Dear ImGui's context and its two back ends.
-class Gui {
-public:
-    Gui(GLFWwindow* window, float scale) {
-        IMGUI_CHECKVERSION();
-        ImGui::CreateContext();
-        ImGuiIO& io = ImGui::GetIO();
-        io.IniFilename = nullptr;
-        io.ConfigFlags |= ImGuiConfigFlags_NavEnableGamepad;
-        static const ImWchar letters[] = {0x20, 0x17F, 0x2010, 0x2030, 0};
-        const char* font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
-        if (!std::filesystem::exists(font) ||
-            !io.Fonts->AddFontFromFileTTF(font, std::round(14.0f * scale), nullptr, letters))
-            io.Fonts->AddFontDefault();
-        set_style(scale);
-        ImGui_ImplGlfw_InitForOpenGL(window, true);
-        ImGui_ImplOpenGL3_Init("#version 450");
-    }
-    ~Gui() {
-        ImGui_ImplOpenGL3_Shutdown();
-        ImGui_ImplGlfw_Shutdown();
-        ImGui::DestroyContext();
-    }
-    Gui(const Gui&) = delete;
-    Gui& operator=(const Gui&) = delete;
-};
-
 double now_s() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
         .count();
 }
-
-/// Cone maps of a scene, made while it is shown by means of others.
-class ConeMaker {
-public:
-    /// Begins for the scene as it is now; what was under way is for nothing.
-    void start(const scene::Scene& scene, double lift_m) {
-        if (busy())
-            pending_ = true;
-        else
-            launch(scene, lift_m);
-    }
-    bool busy() const { return making_.valid(); }
-    /// Gives the maps to the renderer when they are ready and still right.
-    /// @return whether it did
-    bool deliver(render::Renderer& renderer, const scene::Scene& scene) {
-        if (!making_.valid() ||
-            making_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-            return false;
-        const Made made = making_.get();
-        if (pending_ || made.lift_m != renderer.water_lift_m()) {
-            pending_ = false;
-            launch(scene, renderer.water_lift_m());
-            return false;
-        }
-        renderer.give_cone_maps(made.ground, made.surface);
-        return true;
-    }
-    ~ConeMaker() {
-        if (making_.valid())
-            making_.wait();
-    }
-
-private:
-    struct Made {
-        ConeMap ground, surface;
-        double lift_m = 0.0;
-    };
-    void launch(const scene::Scene& scene, double lift_m) {
-        making_ = std::async(
-            std::launch::async, [ground = scene.ground, water = scene.water, lift_m]() mutable {
-                water.offset_m += lift_m;
-                Made made;
-                made.ground = cone_map(ground, nullptr, render::FieldBounds::cone_shift);
-                made.surface = cone_map(ground, &water, render::FieldBounds::cone_shift);
-                made.lift_m = lift_m;
-                return made;
-            });
-    }
-    std::future<Made> making_;
-    bool pending_ = false;
-};
 
 class App {
 public:
@@ -277,9 +143,9 @@ std::optional<glm::dvec3> App::point_at(double x, double y) const {
     const float distance = screen_.distance_at(x, y);
     if (std::isnan(distance)) // not drawn yet: without the GPU
         return first_met(session_.scene, eye, d);
-    if (!(std::abs(distance) < 0.99e9f) || distance == 0.0f)
+    if (!(distance > 0.0f && distance < 0.99e9f))
         return std::nullopt;
-    return eye + d * double(std::abs(distance));
+    return eye + d * double(distance);
 }
 
 void App::keys(double seconds) {
@@ -426,6 +292,11 @@ void App::read_pointer() {
                                 scene::pixel_direction(camera_of(session_.flight.pose()),
                                                        pointer_x_ * w, pointer_y_ * h, w, h),
                                 double(distance));
+    if (const auto& r = state_.pointer; r && r->seen_depth_m)
+        log_.write(now_s() - started_s_, "depth read",
+                   {{"depth_m", *r->depth_m},
+                    {"seen_depth_m", *r->seen_depth_m},
+                    {"apparent_depth_m", *r->apparent_depth_m}});
 }
 
 // Only that something goes on, and how far it is; Escape stops it.

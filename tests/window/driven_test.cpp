@@ -141,6 +141,13 @@ TEST(Driven, FliesDivesAndTakesItBack) {
     TARN_NEEDS_DESK();
     Desk desk;
     desk.open(sample().scene);
+    // The pointer on the lake: how deep it is, and how deep it looks.
+    desk.xdo("mousemove 700 560");
+    ASSERT_TRUE(desk.wait_for("depth read", 5.0));
+    const auto depth = desk.last("depth read");
+    EXPECT_GT(depth["depth_m"], 1.0);
+    EXPECT_LT(depth["apparent_depth_m"], 0.76 * depth["seen_depth_m"].get<double>());
+    EXPECT_GT(depth["apparent_depth_m"], 0.1 * depth["seen_depth_m"].get<double>());
     desk.xdo("mousemove 700 350");
     desk.hold("w", 2.0);
     ASSERT_TRUE(desk.wait_for("pose", 5.0));

@@ -17,7 +17,7 @@ scene::Scene placed_tank() {
     return tank;
 }
 
-/// Distance to a height along a direction, negative: water.
+/// Distance to a height along a direction.
 double to_height(const glm::dvec3& eye, const glm::dvec3& direction, double z) {
     return (eye.z - z) / -glm::normalize(direction).z;
 }
@@ -27,7 +27,7 @@ double to_height(const glm::dvec3& eye, const glm::dvec3& direction, double z) {
 TEST(Probe, StraightDownWaterLooksThreeQuartersAsDeep) {
     const scene::Scene tank = placed_tank(); // 8 m deep
     const glm::dvec3 eye(3, 4, 10);
-    const auto r = read_place(tank, eye, {0, 0, -1}, -10.0);
+    const auto r = read_place(tank, eye, {0, 0, -1}, 10.0);
     ASSERT_TRUE(r && r->seen_depth_m);
     EXPECT_NEAR(*r->depth_m, 8.0, 0.01);
     EXPECT_NEAR(*r->seen_depth_m, 8.0, 0.01);
@@ -42,7 +42,7 @@ TEST(Probe, ObliquelyItLooksShallowerStill) {
     for (const double degrees : {80.0, 60.0, 40.0, 25.0}) { // below the horizon
         const double a = degrees * M_PI / 180.0;
         const glm::dvec3 d(std::cos(a), 0, -std::sin(a));
-        const auto r = read_place(tank, eye, d, -to_height(eye, d, 0.0));
+        const auto r = read_place(tank, eye, d, to_height(eye, d, 0.0));
         ASSERT_TRUE(r && r->apparent_depth_m) << degrees;
         // Snell by hand.
         const double in_water = std::asin(std::cos(a) / 1.333);
@@ -72,7 +72,7 @@ TEST(Probe, SkyIsNothingAndUnknownBedsHaveNoDepth) {
     EXPECT_FALSE(read_place(tank, {0, 0, 10}, {0, 0, 1}, INFINITY));
     EXPECT_FALSE(read_place(tank, {0, 0, 10}, {0, 0, 1}, NAN));
     tank.lakes[0].bed = Bed::unknown;
-    const auto r = read_place(tank, {0, 0, 10}, {0, 0, -1}, -10.0);
+    const auto r = read_place(tank, {0, 0, 10}, {0, 0, -1}, 10.0);
     ASSERT_TRUE(r && r->level_m);
     EXPECT_FALSE(r->depth_m);
     EXPECT_NE(describe(*r).find("bed unknown"), std::string::npos);
