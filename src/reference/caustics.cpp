@@ -65,8 +65,11 @@ SurfaceFunction tabulated(const SurfaceFunction& surface, glm::dvec2 corner_m, d
     };
 }
 
-std::vector<double> sunlight_by_photons(const SurfaceFunction& surface, const PhotonLight& light,
-                                        const SunlitSquare& square, double depth_m) {
+std::vector<std::vector<double>> sunlight_by_photons(const SurfaceFunction& surface,
+                                                     const PhotonLight& light,
+                                                     const SunlitSquare& square,
+                                                     const std::vector<double>& depths_m) {
+    const double deepest_m = *std::max_element(depths_m.begin(), depths_m.end());
     const int n = square.texels;
     const double texel = square.side_m / n;
     const glm::dvec2 straight = photon_below(light.sun, {0, 0}, light.index, light.schlick).lean;
@@ -81,56 +84,73 @@ std::vector<double> sunlight_by_photons(const SurfaceFunction& surface, const Ph
             if (p.share > 0.0)
                 reach = std::max(reach, glm::length(p.lean - straight));
         }
-        margin = int(std::ceil((depth_m + 1.0) * reach / texel)) + 2;
+        margin = int(std::ceil((deepest_m + 1.0) * reach / texel)) + 2;
     }
     const int m = light.photons_a_side;
-    std::vector<double> sum(std::size_t(n) * std::size_t(n), 0.0);
+    const std::size_t texels = std::size_t(n) * std::size_t(n);
+    std::vector<double> sum(texels * depths_m.size(), 0.0); // a plane after the other
     std::mutex adding;
     const glm::dvec3 side_of_sun =
         glm::normalize(std::abs(light.sun.z) < 0.9 ? glm::cross(light.sun, glm::dvec3(0, 0, 1))
                                                    : glm::cross(light.sun, glm::dvec3(1, 0, 0)));
     const glm::dvec3 top_of_sun = glm::cross(light.sun, side_of_sun);
-    tbb::parallel_for(tbb::blocked_range<int>(-margin, n + margin, 8), [&](const auto& rows) {
-        std::vector<double> own(sum.size(), 0.0);
-        for (int row = rows.begin(); row < rows.end(); ++row) {
-            std::mt19937_64 random(std::uint64_t(row + 100'000) +
-                                   (std::uint64_t(light.seed) << 32));
-            std::uniform_real_distribution<double> even(0.0, 1.0);
-            for (int col = -margin; col < n + margin; ++col)
-                for (int k = 0; k < m * m; ++k) {
-                    const glm::dvec2 in_texel((k % m + even(random)) / m,
-                                              (k / m + even(random)) / m);
-                    const glm::dvec2 at =
-                        square.corner_m + texel * (glm::dvec2(col, row) + in_texel);
-                    const SurfacePoint s = surface(at);
-                    glm::dvec3 sun = light.sun;
-                    if (light.disc_rad > 0.0) {
-                        const double r = light.disc_rad * std::sqrt(even(random)),
-                                     a = 6.283185307179586 * even(random);
-                        sun = glm::normalize(
-                            sun + r * (std::cos(a) * side_of_sun + std::sin(a) * top_of_sun));
+    tbb::parallel_for(
+        tbb::blocked_range<int>(-margin, n + margin, std::max(8, n / 8)), [&](const auto& rows) {
+            std::vector<double> own(sum.size(), 0.0);
+            for (int row = rows.begin(); row < rows.end(); ++row) {
+                std::mt19937_64 random(std::uint64_t(row + 100'000) +
+                                       (std::uint64_t(light.seed) << 32));
+                std::uniform_real_distribution<double> even(0.0, 1.0);
+                for (int col = -margin; col < n + margin; ++col)
+                    for (int k = 0; k < m * m; ++k) {
+                        const glm::dvec2 in_texel((k % m + even(random)) / m,
+                                                  (k / m + even(random)) / m);
+                        const glm::dvec2 at =
+                            square.corner_m + texel * (glm::dvec2(col, row) + in_texel);
+                        const SurfacePoint s = surface(at);
+                        glm::dvec3 sun = light.sun;
+                        if (light.disc_rad > 0.0) {
+                            const double r = light.disc_rad * std::sqrt(even(random)),
+                                         a = 6.283185307179586 * even(random);
+                            sun = glm::normalize(
+                                sun + r * (std::cos(a) * side_of_sun + std::sin(a) * top_of_sun));
+                        }
+                        const Photon p = photon_below(sun, s.slope, light.index, light.schlick);
+                        for (std::size_t plane = 0; plane < depths_m.size(); ++plane) {
+                            const double depth_m = depths_m[plane];
+                            const glm::dvec2 lands = at +
+                                                     std::max(depth_m + s.height_m, 0.0) * p.lean -
+                                                     depth_m * straight;
+                            const glm::dvec2 in = (lands - square.corner_m) / texel;
+                            long x = long(std::floor(in.x)), y = long(std::floor(in.y));
+                            if (square.periodic) {
+                                x = ((x % n) + n) % n;
+                                y = ((y % n) + n) % n;
+                            } else if (x < 0 || y < 0 || x >= n || y >= n) {
+                                continue;
+                            }
+                            own[plane * texels + std::size_t(y) * std::size_t(n) +
+                                std::size_t(x)] += p.share;
+                        }
                     }
-                    const Photon p = photon_below(sun, s.slope, light.index, light.schlick);
-                    const glm::dvec2 lands =
-                        at + std::max(depth_m + s.height_m, 0.0) * p.lean - depth_m * straight;
-                    const glm::dvec2 in = (lands - square.corner_m) / texel;
-                    long x = long(std::floor(in.x)), y = long(std::floor(in.y));
-                    if (square.periodic) {
-                        x = ((x % n) + n) % n;
-                        y = ((y % n) + n) % n;
-                    } else if (x < 0 || y < 0 || x >= n || y >= n) {
-                        continue;
-                    }
-                    own[std::size_t(y) * std::size_t(n) + std::size_t(x)] += p.share;
-                }
-        }
-        const std::lock_guard lock(adding);
-        for (std::size_t i = 0; i < sum.size(); ++i)
-            sum[i] += own[i];
-    });
-    for (double& v : sum)
-        v /= double(m * m);
-    return sum;
+            }
+            const std::lock_guard lock(adding);
+            for (std::size_t i = 0; i < sum.size(); ++i)
+                sum[i] += own[i];
+        });
+    std::vector<std::vector<double>> planes;
+    for (std::size_t plane = 0; plane < depths_m.size(); ++plane) {
+        const auto first = sum.begin() + std::ptrdiff_t(plane * texels);
+        planes.emplace_back(first, first + std::ptrdiff_t(texels));
+        for (double& v : planes.back())
+            v /= double(m * m);
+    }
+    return planes;
+}
+
+std::vector<double> sunlight_by_photons(const SurfaceFunction& surface, const PhotonLight& light,
+                                        const SunlitSquare& square, double depth_m) {
+    return sunlight_by_photons(surface, light, square, std::vector<double>{depth_m}).front();
 }
 
 SunTiles::SunTiles(const waves::Sea& sea, double time_s, const PhotonLight& light,
@@ -191,10 +211,11 @@ SunTiles::SunTiles(const waves::Sea& sea, double time_s, const PhotonLight& ligh
             PhotonLight even = light;
             even.disc_rad = 0.0; // blurred with the rest
             even.photons_a_side = 8;
+            std::vector<double> depths_m;
             for (int k = 0; k <= int(std::ceil(doublings * out.slices_a_doubling)); ++k)
-                out.slices.push_back(sunlight_by_photons(
-                    table, even, {.corner_m = {0, 0}, .side_m = c.patch_m, .texels = side_},
-                    out.first_m * std::exp2(k / out.slices_a_doubling)));
+                depths_m.push_back(out.first_m * std::exp2(k / out.slices_a_doubling));
+            out.slices = sunlight_by_photons(
+                table, even, {.corner_m = {0, 0}, .side_m = c.patch_m, .texels = side_}, depths_m);
         }
         cascades_.push_back(std::move(out));
     }

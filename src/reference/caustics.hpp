@@ -55,6 +55,12 @@ struct PhotonLight {
 std::vector<double> sunlight_by_photons(const SurfaceFunction& surface, const PhotonLight& light,
                                         const SunlitSquare& square, double depth_m);
 
+/// The same at several depths, by the same photons: one plane for each.
+std::vector<std::vector<double>> sunlight_by_photons(const SurfaceFunction& surface,
+                                                     const PhotonLight& light,
+                                                     const SunlitSquare& square,
+                                                     const std::vector<double>& depths_m);
+
 /// The model that a picture uses, from photons in double precision: a product of what each cascade
 /// casts, blurred by the finer ones by chance (see shaders/lib/caustics.glsl). What it leaves out
 /// against all waves together is measured in docs/physics/caustics.md.
