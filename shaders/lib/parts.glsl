@@ -74,6 +74,9 @@ struct Part {
     bool bed_known; // in that lake
 };
 
+// pixel_of — the picture's pixel that an invocation of the tile draws.
+ivec2 pixel_of(ViewBlock view, ivec2 local) { return local + view.tile.xy + (local >> 3) * view.walk.zw; }
+
 Part camera_part(ViewBlock view, ivec2 pixel) {
     vec2 place = (vec2(pixel) + view.offset.xy) * view.inverse_size.zw;
     vec3 direction =

@@ -38,7 +38,7 @@ float overlay_distance(ivec2 pixel) {
     return t > 0.0 ? t : far_m;
 }
 
-void store(ivec2 pixel, Part part, float limit, float overlay_t, bool found, Hit hit) {
+void store(ivec2 local, ivec2 pixel, Part part, float limit, float overlay_t, bool found, Hit hit) {
     End end = End(limit, ivec2(0), vec2(0.0), 0u);
     if (found) {
         end = End(hit.t, hit.cell, hit.inside, hit.water ? end_surface : end_ground);
@@ -56,14 +56,14 @@ void store(ivec2 pixel, Part part, float limit, float overlay_t, bool found, Hit
         end.flags = end_surface | (part.bed_known ? end_bed_known : 0u);
         place_at(view, part, limit, end.cell, end.inside);
     }
-    imageStore(hits, pixel - view.tile.xy, pack_end(end));
+    imageStore(hits, local, pack_end(end));
     if (view.offset.z < 0.5)
         imageStore(distance_image, pixel, vec4(end.flags != 0u ? end.t : far_m));
 }
 
 void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + view.tile.xy;
-    if (any(greaterThanEqual(pixel - view.tile.xy, view.tile.zw)))
+    ivec2 local = ivec2(gl_GlobalInvocationID.xy), pixel = pixel_of(view, local);
+    if (any(greaterThanEqual(local, view.tile.zw)))
         return;
     Part part = camera_part(view, pixel);
 #ifdef TARN_WAVES
@@ -76,5 +76,5 @@ void main() {
     bool found = false;
     if (!part.in_water || part.bed_known)
         found = trace_field(heights, bounds, field_of(view), ray, min(limit, overlay_t), !part.in_water, hit);
-    store(pixel, part, limit, overlay_t, found, hit);
+    store(local, pixel, part, limit, overlay_t, found, hit);
 }

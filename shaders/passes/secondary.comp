@@ -25,10 +25,10 @@ void main() {
     if ((first_end.flags & end_surface) == 0u)
         return;
     int number = 1 + int(gl_GlobalInvocationID.z);
-    Part first = camera_part(view, local + view.tile.xy);
+    Part first = camera_part(view, pixel_of(view, local));
 #ifdef TARN_WAVES
     WaveSurface met = unpack_surface(imageLoad(surfaces, local));
-    Surface surface = Surface(slope_of_part(met, number, first.in_water, local + view.tile.xy, view.offset.z,
+    Surface surface = Surface(slope_of_part(met, number, first.in_water, pixel_of(view, local), view.offset.z,
                                             first.direction, view.optics.x),
                               surface_level(heights, view, first, first_end));
 #else
@@ -39,7 +39,8 @@ void main() {
         return;
     float limit = reach(view, part);
     End end = End(limit, ivec2(0), vec2(0.0), 0u);
-    if (!part.in_water || part.bed_known) {
+    bool walks = number != 1 || first.in_water || (view.counts.z & TARN_FLAG_MIRRORED_LAND) != 0u;
+    if (walks && (!part.in_water || part.bed_known)) {
         Hit hit;
         if (trace_field(heights, bounds, field_of(view), ray_of(view, part), limit, false, hit))
             end = End(hit.t, hit.cell, hit.inside, end_ground);

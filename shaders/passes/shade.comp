@@ -326,7 +326,7 @@ void main() {
     ivec2 local = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(local, view.tile.zw)))
         return;
-    ivec2 pixel = local + view.tile.xy;
+    ivec2 pixel = pixel_of(view, local);
     Part first = camera_part(view, pixel);
     End first_end = unpack_end(imageLoad(hits[0], local));
     Sunlit sunlit = Sunlit(1.0, 1.0);

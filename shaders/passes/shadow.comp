@@ -23,7 +23,7 @@ void main() {
     if (any(greaterThanEqual(local, view.tile.zw)))
         return;
     int number = int(gl_GlobalInvocationID.z);
-    Part part = camera_part(view, local + view.tile.xy);
+    Part part = camera_part(view, pixel_of(view, local));
     uvec4 stored = imageLoad(hits[0], local);
     if (number > 0) {
         End first_end = unpack_end(stored);
@@ -31,7 +31,7 @@ void main() {
             return;
 #ifdef TARN_WAVES
         WaveSurface met = unpack_surface(imageLoad(surfaces, local));
-        Surface surface = Surface(slope_of_part(met, number, part.in_water, local + view.tile.xy, view.offset.z,
+        Surface surface = Surface(slope_of_part(met, number, part.in_water, pixel_of(view, local), view.offset.z,
                                             part.direction, view.optics.x),
                               surface_level(heights, view, part, first_end));
 #else

@@ -97,7 +97,7 @@ float shaft_focus(Part part, float depth_m, float sink, float slant, float befor
 
 // The part that a slot is for, and where it ends. Returns whether there is one.
 bool part_of_slot(ivec2 local, int slot, out Part part, out End end, out float before_m, out float water_m) {
-    part = camera_part(view, local + view.tile.xy);
+    part = camera_part(view, pixel_of(view, local));
     end = unpack_end(imageLoad(hits[0], local));
     before_m = water_m = 0.0;
     bool from_water = part.in_water;
@@ -107,7 +107,7 @@ bool part_of_slot(ivec2 local, int slot, out Part part, out End end, out float b
     if ((end.flags & end_surface) == 0u)
         return false;
     WaveSurface met = unpack_surface(imageLoad(surfaces, local));
-    Surface surface = Surface(slope_of_part(met, number, from_water, local + view.tile.xy, view.offset.z, part.direction,
+    Surface surface = Surface(slope_of_part(met, number, from_water, pixel_of(view, local), view.offset.z, part.direction,
                                             view.optics.x),
                               surface_level(heights, view, part, end));
     before_m = end.t;

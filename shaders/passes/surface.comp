@@ -27,7 +27,7 @@ layout(binding = TARN_IMAGE_SURFACE, rgba32ui) uniform writeonly uimage2D surfac
 layout(binding = TARN_IMAGE_DISTANCE, r32f) uniform writeonly image2D distance_image;
 
 // The surface where the waves were met, for the passes that follow.
-void store_surface(ivec2 pixel, Part part, End end) {
+void store_surface(ivec2 local, ivec2 pixel, Part part, End end) {
     vec4 ground = textureGather(heights, (vec2(end.cell) + 1.0) * view.inverse_size.xy, 0) * view.heights.y;
     float level = surface_level(heights, view, part, end);
     vec2 at = (vec2(end.cell) + end.inside - view.base.xy) * view.grid.z;
@@ -38,11 +38,11 @@ void store_surface(ivec2 pixel, Part part, End end) {
     vec2 mean = wave_slopes(wave_slope_layers, wave_table, waves, at, footprint, amplitude, taken);
     vec3 to_viewer = (part.in_water ? 1.0 : -1.0) * part.direction;
     vec2 lot = draw_slope(pixel, view.offset.z, to_viewer, mean, taken, part.in_water ? 0.0 : 1.0 / view.optics.x, bright);
-    imageStore(surfaces, pixel - view.tile.xy, pack_surface(WaveSurface(mean, lot, bright, taken)));
+    imageStore(surfaces, local, pack_surface(WaveSurface(mean, lot, bright, taken)));
 }
 
 void main() {
-    ivec2 local = ivec2(gl_GlobalInvocationID.xy), pixel = local + view.tile.xy;
+    ivec2 local = ivec2(gl_GlobalInvocationID.xy), pixel = pixel_of(view, local);
     if (any(greaterThanEqual(local, view.tile.zw)))
         return;
     End end = unpack_end(imageLoad(hits, local));
@@ -95,7 +95,7 @@ void main() {
         end = End(reach_m, ivec2(0), vec2(0.0), 0u);
     imageStore(hits, local, pack_end(end));
     if (met == met_water)
-        store_surface(pixel, part, end);
+        store_surface(local, pixel, part, end);
     if (view.offset.z < 0.5)
         imageStore(distance_image, pixel, vec4(end.flags != 0u ? end.t : far_m));
 }

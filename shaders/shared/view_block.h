@@ -49,6 +49,7 @@ using ivec4 = glm::ivec4;
 #define TARN_FLAG_UNDER_WATER 64u
 #define TARN_FLAG_OVERLAY 128u
 #define TARN_FLAG_THROWN_BACK 256u
+#define TARN_FLAG_MIRRORED_LAND 512u
 
 struct ViewBlock {
     vec4 camera;          // xyz: position from the node `base` (grid), w: angle of a pixel [rad]
@@ -88,7 +89,8 @@ struct ViewBlock {
                           // depth [m]; 0: none of them; w: what is added to z for heights that contours count from
     vec4 drape;           // xy: grid position of its north-west corner, z: nodes a texel, w: reach of nearness [m], 0: none
     vec4 exposed;         // x: level that the bed was exposed from [m], y: 1 if there is such, zw: -
-    ivec4 walk;           // x: level of the root block, y: cone map's blocks are 2^y cells a side, zw: -
+    ivec4 walk;           // x: level of the root block, y: cone map's blocks are 2^y cells a side,
+                          // zw: pixels left out after each 8 across and down, for samples of a picture
 };
 
 #ifdef __cplusplus

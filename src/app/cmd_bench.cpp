@@ -1,3 +1,4 @@
+#include "app/bench_matrix.hpp"
 #include "app/command.hpp"
 #include "app/console.hpp"
 #include "app/plot.hpp"
@@ -27,10 +28,11 @@ namespace {
 using nlohmann::json;
 
 struct Words {
-    std::string scene, size = "800x600", json_file, chart, from, pictures;
-    std::vector<std::string> methods, views;
+    MatrixWords matrix;
+    std::string scene, size = "800x600", json_file, chart, from, pictures, report, against;
+    std::vector<std::string> scenes, methods, views;
     int synthetic = 1024, runs = 7, rays = 20'000;
-    bool intersection = false, failures = false;
+    bool intersection = false, failures = false, size_given = false;
 };
 
 json measure(const Words& words) {
@@ -86,21 +88,22 @@ json measure(const Words& words) {
     return json::parse(out.str());
 }
 
-json read_results(const std::string& path) {
+json read_results(const std::string& option, const std::string& path) {
     std::ifstream in(path, std::ios::binary);
     if (!in)
-        throw Error("--from " + path + ": no such file", "name a file that --json wrote");
+        throw Error(option + " " + path + ": no such file", "name a file that --json wrote");
     try {
         json stored = json::parse(in);
         for (const char* key : {"device", "commit", "results"})
             if (!stored.contains(key))
-                throw Error("--from " + path + ": has no '" + key + "'",
+                throw Error(option + " " + path + ": has no '" + key + "'",
                             "name a file that --json wrote");
         if (!stored.at("results").is_array() || stored.at("results").empty())
-            throw Error("--from " + path + ": holds no results", "name a file that --json wrote");
+            throw Error(option + " " + path + ": holds no results",
+                        "name a file that --json wrote");
         return stored;
     } catch (const json::exception& error) {
-        throw Error("--from " + path + ": is not understood (" + error.what() + ")",
+        throw Error(option + " " + path + ": is not understood (" + error.what() + ")",
                     "name a file that --json wrote");
     }
 }
@@ -249,9 +252,31 @@ void print_failures(const Words& words) {
     end_progress();
 }
 
-int run_bench(const Words& words) {
-    if (!words.intersection)
-        throw Error("nothing to measure was named", "add --intersection");
+int run_matrix(const Words& words) {
+    if (!words.report.empty())
+        check_plot("chart.png");
+    json against;
+    if (!words.against.empty())
+        against = read_results("--against", words.against);
+    const json all =
+        words.from.empty() ? measure_matrix(words.matrix) : read_results("--from", words.from);
+    try {
+        print_matrix(all);
+        if (!words.json_file.empty())
+            write_beside(words.json_file, all.dump(1) + "\n");
+        if (!words.report.empty())
+            write_report(all, words.report, command_line());
+        if (!words.against.empty() && print_changes(all, against) == 0)
+            throw Error("--against " + words.against + ": has no row of what was measured",
+                        "measure the same scenes, views, sizes and effects");
+    } catch (const json::exception& error) {
+        throw Error(text("the results are not understood (", error.what(), ")"),
+                    "name files that --json wrote without --intersection");
+    }
+    return 0;
+}
+
+int run_bench(Words words) {
     // Whatever cannot be written is told before minutes of work.
     for (const std::string& output :
          {words.json_file, words.chart, words.pictures.empty() ? "" : words.pictures + "/x"}) {
@@ -261,11 +286,26 @@ int run_bench(const Words& words) {
     }
     if (!words.chart.empty())
         check_plot(words.chart);
+    if (!words.intersection) {
+        if (words.failures || !words.methods.empty() || !words.chart.empty())
+            throw Error("--failures, --methods and --chart belong to --intersection",
+                        "add --intersection, or leave them out");
+        words.matrix.scenes = words.scenes;
+        words.matrix.views = words.views;
+        return run_matrix(words);
+    }
+    if (words.scenes.size() > 1)
+        throw Error("--intersection takes one scene");
+    if (!words.report.empty() || !words.against.empty() || !words.matrix.effects.empty())
+        throw Error("--report, --against and --effects do not go with --intersection",
+                    "leave them out; --chart draws");
+    words.scene = words.scenes.empty() ? "" : words.scenes.front();
+    words.size = words.size_given ? words.matrix.sizes : words.size;
     if (words.failures) {
         print_failures(words);
         return 0;
     }
-    const json all = words.from.empty() ? measure(words) : read_results(words.from);
+    const json all = words.from.empty() ? measure(words) : read_results("--from", words.from);
     try {
         print_table(all);
         if (!words.json_file.empty())
@@ -285,10 +325,34 @@ int run_bench(const Words& words) {
 void add_bench(CLI::App& app, Run& run) {
     auto words = std::make_shared<Words>();
     CLI::App* c = app.add_subcommand("bench", "speed against accuracy: table, JSON, chart");
+    MatrixWords& m = words->matrix;
     CLI::Option* scene =
-        c->add_option("SCENE", words->scene, "scene folder; without it a synthetic mountain lake");
-    c->add_flag("--intersection", words->intersection, "ways of finding a ray's first hit");
-    c->add_option("--synthetic", words->synthetic, "nodes a side of the synthetic lake")
+        c->add_option("SCENE", words->scenes,
+                      "scene folders, bowl, mountain:NODES; without any a bowl and "
+                      "a mountain lake, both made of formulas");
+    c->add_option("--effects", m.effects, "only these parts of the picture, comma between")
+        ->delimiter(',')
+        ->check(CLI::IsMember(effect_names()));
+    c->add_option("--wind", m.wind_m_per_s, "besides calm water; 0: calm alone [m/s]")
+        ->check(CLI::Range(0.0, 30.0))
+        ->capture_default_str();
+    c->add_option("--samples", m.samples, "a pixel, of the pictures that are judged")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    c->add_option("--reference", m.reference,
+                  "hold pictures of calm water, all or none against the double-precision tracer, "
+                  "which takes its time and is kept")
+        ->check(CLI::IsMember({"calm", "all", "none"}))
+        ->capture_default_str();
+    c->add_option("--cache", m.cache, "where its pictures are kept; default: the user's cache");
+    c->add_option("--report", words->report,
+                  "a folder for report.md with its charts; needs gnuplot");
+    c->add_option("--against", words->against,
+                  "mark what differs from the results of an earlier --json");
+    c->add_flag("--intersection", words->intersection,
+                "instead: ways of finding a ray's first hit");
+    c->add_option("--synthetic", words->synthetic,
+                  "with --intersection: nodes a side of the synthetic lake")
         ->check(CLI::Range(17, 16384))
         ->capture_default_str();
     std::vector<std::string> names;
@@ -297,10 +361,15 @@ void add_bench(CLI::App& app, Run& run) {
     c->add_option("--methods", words->methods, "only these, comma between")
         ->delimiter(',')
         ->check(CLI::IsMember(names));
-    c->add_option("--views", words->views,
-                  "only these: the scene's cameras, or high, grazing, shore, below")
+    c->add_option(
+         "--views", words->views,
+         "only these: high, grazing, shore, top, dive-down, dive-up, half-submerged, the scene's "
+         "cameras; with --intersection its cameras, or high, grazing, shore, below")
         ->delimiter(',');
-    c->add_option("--size", words->size, "of the pictures [px]")->capture_default_str();
+    CLI::Option* size = c->add_option(
+        "--size", m.sizes,
+        "of the pictures [px], commas between: the first for everything, others for the picture as "
+        "a whole; default 320x240, with --intersection 800x600");
     c->add_option("--runs", words->runs, "timed pictures; the median counts")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
@@ -322,11 +391,18 @@ void add_bench(CLI::App& app, Run& run) {
     failures->excludes(json_file)->excludes(chart)->excludes(from)->excludes(scene);
     from->excludes(scene);
     c->footer("Examples:\n"
+              "  tarn bench --report out --json out/bench.json\n"
+              "  tarn bench rotoma bowl --effects caustics,shafts --reference all\n"
+              "  tarn bench --against yesterday.json\n"
               "  tarn bench --intersection --chart walks.svg --json walks.json\n"
               "  tarn bench rotoma --intersection --methods cone-map,uniform-steps --views shore\n"
               "  tarn bench --intersection --failures --rays 5000\n"
               "  tarn bench --intersection --from gpu.json --chart gpu.svg");
-    c->callback([words, &run] { run = [words] { return run_bench(*words); }; });
+    c->callback([words, size, &run] {
+        words->size_given = size->count() > 0;
+        words->matrix.runs = words->runs;
+        run = [words] { return run_bench(*words); };
+    });
 }
 
 } // namespace tarn::app

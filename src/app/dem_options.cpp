@@ -15,14 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of the user's: what `variable` names, or `fallback` in the home folder.
-fs::path user_folder(const char* variable, const char* fallback) {
-    if (const char* chosen = std::getenv(variable); chosen && *chosen)
-        return chosen;
-    const char* home = std::getenv("HOME");
-    return fs::path(home && *home ? home : "/tmp") / fallback;
-}
-
 void choose_source(DemWords& words) {
     std::vector<RemoteSource> sources = dem::known_sources();
     fs::path file = words.sources;
@@ -48,6 +40,13 @@ void choose_source(DemWords& words) {
 }
 
 } // namespace
+
+fs::path user_folder(const char* variable, const char* fallback) {
+    if (const char* chosen = std::getenv(variable); chosen && *chosen)
+        return chosen;
+    const char* home = std::getenv("HOME");
+    return fs::path(home && *home ? home : "/tmp") / fallback;
+}
 
 void add_dem_options(CLI::App& c, DemWords& words) {
     dem::ImportOptions& options = words.options;

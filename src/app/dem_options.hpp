@@ -3,6 +3,7 @@
 #include "dem/import.hpp"
 
 #include <CLI/App.hpp>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,5 +21,8 @@ void add_dem_options(CLI::App& command, DemWords& words);
 /// Turns the words into options, after parsing.
 /// @throws tarn::Error  naming the option
 void read_dem_words(DemWords& words);
+
+/// Where this user's programs keep files of some kind: $VARIABLE, else a folder of the home.
+std::filesystem::path user_folder(const char* variable, const char* fallback);
 
 } // namespace tarn::app

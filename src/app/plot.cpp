@@ -187,4 +187,54 @@ void draw_trades(const TradePlot& plot, const fs::path& path) {
     draw(sheet, script, path);
 }
 
+void draw_ways(const WayPlot& plot, const fs::path& path) {
+    const Sheet sheet = sheet_for(path, 1200, 800);
+    constexpr double floor = 1e-6; // of the errors that are drawn
+    std::string script =
+        text("set title ", quoted(plot.title + " - " + plot.device), " noenhanced font ',14'\n",
+             "set logscale xy\nset grid\nset border 3\nset tics nomirror\n",
+             "set xlabel 'time of one picture, as a share of the best one'\n",
+             "set ylabel 'relative radiance error against the best, mean [%]'\n",
+             "set key outside right top reverse Left samplen 1.5\nset format y '%g'\n",
+             "set yrange [", 50.0 * floor, ":*]\nset offsets graph 0.04, graph 0.08, 0, 0\n");
+    std::vector<std::string> effects;
+    for (const auto& p : plot.points)
+        if (std::find(effects.begin(), effects.end(), p.effect) == effects.end())
+            effects.push_back(p.effect);
+    static const char* colours[] = {"#222222", "#1f5fa8", "#2a9d8f", "#7b4fa3",
+                                    "#e07b39", "#c0392b", "#b8860b", "#c2185b",
+                                    "#558b2f", "#00838f", "#6d4c41", "#8e24aa"};
+    std::string data, curves;
+    const auto line_of = [&](const WayPlot::Point& p) {
+        return text(p.time_share, " ", 100.0 * std::max(p.error, floor), " \"", p.name, "\"\n");
+    };
+    std::vector<WayPlot::Point> front;
+    for (const auto& p : plot.points)
+        if (p.on_front)
+            front.push_back(p);
+    std::sort(front.begin(), front.end(),
+              [](const auto& a, const auto& b) { return a.time_share < b.time_share; });
+    data += "$front << END\n";
+    for (const auto& p : front)
+        data += line_of(p);
+    data += "END\n";
+    curves =
+        "plot $front using 1:2 with lines lw 1.5 dashtype 2 lc rgb '#999999' title 'Pareto front'";
+    for (std::size_t k = 0; k < effects.size(); ++k) {
+        data += text("$e", k, " << END\n");
+        for (const auto& p : plot.points)
+            if (p.effect == effects[k])
+                data += line_of(p);
+        data += "END\n";
+        const char* colour = colours[k % std::size(colours)];
+        curves += text(", $e", k, " using 1:2 with points pt ", k % 8 + 4, " ps 1.2 lc rgb '",
+                       colour, "' title ", quoted(effects[k]), ", $e", k,
+                       " using 1:2:3 with labels noenhanced left offset 0.8,0.3 font ',9' "
+                       "textcolor rgb '",
+                       colour, "' notitle");
+    }
+    script += data + curves + "\nunset output\n";
+    draw(sheet, script, path);
+}
+
 } // namespace tarn::app

@@ -47,4 +47,18 @@ struct TradePlot {
 /// @throws as draw_stages()
 void draw_trades(const TradePlot& plot, const std::filesystem::path& path);
 
+/// Ways of drawing, one point each: time and error against a picture at its best.
+struct WayPlot {
+    std::string title, device;
+    struct Point {
+        std::string effect, name;
+        double time_share, error; ///< error 0 is drawn on the floor
+        bool on_front;
+    };
+    std::vector<Point> points;
+};
+
+/// @throws as draw_stages()
+void draw_ways(const WayPlot& plot, const std::filesystem::path& path);
+
 } // namespace tarn::app

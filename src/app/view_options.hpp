@@ -23,7 +23,8 @@ struct ViewWords {
     bool no_thrown_back = false;
     std::optional<double> index;
     std::string fresnel = "exact", intersection = "cone-map", caustics = "splat";
-    bool no_shadows = false, no_reflection = false, no_refraction = false, no_sun_disc = false;
+    bool no_shadows = false, no_reflection = false, no_mirrored_land = false, no_refraction = false,
+         no_sun_disc = false;
     scene::RenderSettings settings;
     // Waves: what is not given is as the scene says.
     std::optional<std::string> waves, wave_list, wind_rose, pokes;

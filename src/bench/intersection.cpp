@@ -1,5 +1,6 @@
 #include "bench/intersection.hpp"
 
+#include "bench/matrix.hpp"
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
@@ -110,19 +111,6 @@ void judge(const Truth& truth, const std::vector<float>& distances, Intersection
         result.mean_error += e / double(errors.size());
     result.p95_error = errors[errors.size() * 95 / 100];
     result.p99_error = errors[errors.size() * 99 / 100];
-}
-
-/// A JSON string: names of folders and cameras may hold anything.
-std::string quoted(const std::string& words) {
-    std::string out = "\"";
-    for (const char c : words) {
-        if (c == '"' || c == '\\')
-            out += '\\';
-        out += static_cast<unsigned char>(c) < 32    ? ' '
-               : static_cast<unsigned char>(c) < 127 ? c
-                                                     : '?';
-    }
-    return out + "\"";
 }
 
 } // namespace

@@ -45,7 +45,7 @@ time_parts(const std::function<void(const std::function<void(const char*)>&)>& w
     const bool stamps = !gpu::is_software(); // whose stamps do not move
     std::vector<std::string> names;
     std::vector<std::vector<double>> times;
-    for (int run = -3; run < std::max(1, runs); ++run) { // three to warm up
+    for (int run = stamps ? -3 : -1; run < std::max(1, runs); ++run) { // first to warm up
         std::vector<GLuint> queries;
         std::vector<Clock::time_point> moments;
         std::vector<std::string> seen;

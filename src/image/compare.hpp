@@ -29,4 +29,9 @@ struct DistanceDifference {
 DistanceDifference compare_distances(const Image& got, const Image& expected, double quantum_m,
                                      double share);
 
+/// Share of pixels where a person would see a difference on a screen of 45 degrees that shows the
+/// reference's 99th percentile as white of 100 cd/m2 (Yee, "A perceptual metric for production
+/// testing", 2004, as OpenImageIO has it). In a file of its own: the others need no library.
+double visible_share(const Image& got, const Image& expected);
+
 } // namespace tarn::image

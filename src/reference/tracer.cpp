@@ -465,8 +465,10 @@ private:
         const Lake lake{met->level_m, scene_.lake_at_level(met->level_m).bed != Bed::unknown};
         const Split at = split(direction, *met, false, *lot);
         glm::dvec3 out(0.0);
-        if (settings_.reflection)
+        if (settings_.reflection && settings_.mirrored_land)
             out += at.mirror * in_air(hit.point, at.reflected, before_m + hit.t, nullptr, {});
+        else if (settings_.reflection)
+            out += at.mirror * sky(at.reflected);
         if (settings_.refraction && at.mirror < 1.0)
             out += at.through *
                    in_water(hit.point, at.refracted, lake, before_m + hit.t, 0.0, nullptr, {});

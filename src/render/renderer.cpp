@@ -438,6 +438,7 @@ void Renderer::prepare(const scene::View& view) {
     std::uint32_t flags = 0;
     flags |= settings.shadows ? TARN_FLAG_SHADOWS : 0u;
     flags |= settings.reflection ? TARN_FLAG_REFLECTION : 0u;
+    flags |= settings.mirrored_land ? TARN_FLAG_MIRRORED_LAND : 0u;
     flags |= settings.refraction ? TARN_FLAG_REFRACTION : 0u;
     flags |= settings.thrown_back ? TARN_FLAG_THROWN_BACK : 0u;
     flags |= settings.fresnel == scene::Fresnel::schlick ? TARN_FLAG_SCHLICK : 0u;
@@ -716,6 +717,45 @@ void Renderer::draw_rows(int sample, int samples, int first_row, int rows) {
         block_.tile = {0, top, width, std::min(most, last - top)};
         draw_tile();
     }
+}
+
+Image Renderer::draw_blocks(int every) {
+    if (every < 1)
+        throw Error(text("every ", every, "th block is asked for, must be at least 1"));
+    const int width = int(block_.counts.x), height = int(block_.counts.y);
+    // Whole blocks of the picture alone; the first ones stand in the middle of their share.
+    const int blocks_across = width / 8, blocks_down = height / 8;
+    const auto count = [&](int blocks) { return (blocks + every - 1 - every / 2) / every; };
+    const int across = count(blocks_across), down = count(blocks_down);
+    if (across < 1 || down < 1)
+        return {};
+    block_.tile = {8 * (every / 2), 8 * (every / 2), 8 * across,
+                   std::min(8 * down, hits_[0].height_px() / 8 * 8)};
+    block_.walk.z = block_.walk.w = 8 * (every - 1);
+    for (int sample = 0; sample < samples_; ++sample) {
+        set_sample(sample, samples_);
+        view_buffer_.write(&block_, sizeof block_);
+        if (sample == 0) {
+            if (on_pass)
+                on_pass("beams");
+            bind_walk(!under_water());
+            find_beams();
+        }
+        draw_tile();
+    }
+    const Image whole = read_back();
+    Image out;
+    out.width_px = block_.tile.z;
+    out.height_px = block_.tile.w;
+    for (int y = 0; y < out.height_px; ++y)
+        for (int x = 0; x < out.width_px; ++x) {
+            const auto at = [&](int v) { return v + block_.tile.x + (v >> 3) * block_.walk.z; };
+            const std::size_t i = std::size_t(at(y)) * std::size_t(width) + std::size_t(at(x));
+            out.radiance.push_back(whole.radiance[i]);
+            out.distance_m.push_back(whole.distance_m[i]);
+        }
+    block_.walk.z = block_.walk.w = 0;
+    return out;
 }
 
 Image Renderer::draw(const scene::View& view, const std::function<void(double)>& progress) {

@@ -65,6 +65,11 @@ public:
     /// it
     void draw_rows(int sample, int samples, int first_row, int rows);
 
+    /// A sample of a prepared picture: each `every`th block of 8 x 8 pixels across and down, side
+    /// by side, with all their samples. What stands in them is what the whole picture shows there.
+    /// @param every  at least 1; empty if the picture holds no such block
+    Image draw_blocks(int every);
+
     /// Reads heights, lakes and optics of the scene again, which somebody has changed; sizes and
     /// the photograph must be the same. Then prepare().
     /// @param settled  false while somebody drags a level: waves and land's shadow stay as they
@@ -112,6 +117,10 @@ public:
     /// The sea of the last prepare(), where it was not calm.
     const WaveField* waves() const { return wavy() ? &*waves_ : nullptr; }
     WaveField* waves() { return wavy() ? &*waves_ : nullptr; }
+
+    /// Do waves focus the sun's light in the picture of the last prepare()? What it is like, then.
+    bool caustics() const { return caustics_; }
+    const SunlightVolume& sunlight() const { return sunlight_; }
 
     /// Called before each pass with its name, and with "end" after the last: for timing. May be
     /// empty.

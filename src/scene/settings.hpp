@@ -65,6 +65,7 @@ struct RenderSettings {
     Fresnel fresnel = Fresnel::exact;
     bool shadows = true;
     bool reflection = true;
+    bool mirrored_land = true; ///< false: seen from above, water mirrors the sky alone
     bool refraction = true;
     bool spectral = true;    ///< integrate over the water's bands; false: three narrow channels
     bool thrown_back = true; ///< light that the surface sends back to the bed

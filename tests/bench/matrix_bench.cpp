@@ -1,0 +1,97 @@
+// tarn_matrix_bench - the matrix of `tarn bench` over lakes made of formulas, without the
+// reference: made of what draws alone, so it runs on a bare GPU machine. `tarn bench --from FILE
+// --report FOLDER` draws what it wrote.
+//
+//   tarn_matrix_bench [--scenes bowl,mountain:4096] [--size WxH] [--wind M/S] [--samples N]
+//                     [--runs N] [--views NAME,NAME] [--json FILE]
+#include "bench/matrix.hpp"
+#include "core/error.hpp"
+#include "core/text.hpp"
+#include "gpu/context.hpp"
+#include "scene/samples.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <glm/geometric.hpp>
+#include <iostream>
+
+namespace {
+
+using namespace tarn;
+
+int run(int argc, char** argv) {
+    std::string scenes = "bowl,mountain:4096", json, views;
+    bench::MatrixOptions options{.width_px = 1920, .height_px = 1080, .runs = 31};
+    double wind = 6.0;
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        if (i + 1 >= argc)
+            throw Error(word + " needs a value");
+        const std::string value = argv[++i];
+        if (word == "--scenes")
+            scenes = value;
+        else if (word == "--size") {
+            if (std::sscanf(value.c_str(), "%dx%d", &options.width_px, &options.height_px) != 2)
+                throw Error("--size '" + value + "' is not understood");
+        } else if (word == "--wind")
+            wind = std::atof(value.c_str());
+        else if (word == "--samples")
+            options.samples = std::max(1, std::atoi(value.c_str()));
+        else if (word == "--runs")
+            options.runs = std::max(1, std::atoi(value.c_str()));
+        else if (word == "--views")
+            views = value;
+        else if (word == "--json")
+            json = value;
+        else
+            throw Error("unknown option " + word);
+    }
+    const gpu::Context context;
+    std::vector<bench::MatrixResult> results;
+    for (const std::string& name : split(scenes, ',')) {
+        const std::vector<std::string> parts = split(name, ':');
+        const scene::Scene scene = parts.size() == 2
+                                       ? scene::mountain_lake(std::atoi(parts[1].c_str()))
+                                       : scene::bowl(513);
+        const glm::dvec3 sun = glm::normalize(glm::dvec3(0.5, -0.4, 0.75));
+        for (const double speed : {0.0, wind}) {
+            bench::MatrixScene what;
+            what.name = name;
+            what.state = speed > 0.0 ? text("wind ", speed, " m/s") : "calm";
+            for (const scene::NamedCamera& view :
+                 bench::standard_views(scene, sun, double(options.width_px) / options.height_px))
+                if (views.empty() ||
+                    ("," + views + ",").find("," + view.name + ",") != std::string::npos)
+                    what.views.push_back(view);
+            what.view.lighting = scene::clear_sky(sun);
+            if (speed > 0.0) {
+                what.view.waves.model = waves::Model::jonswap;
+                what.view.waves.wind_m_per_s = speed;
+                if (gpu::is_software()) // as `tarn bench`
+                    what.view.waves.texels = 256;
+            }
+            for (bench::MatrixResult& r : bench::run_matrix(scene, what, options, {}))
+                results.push_back(std::move(r));
+            std::cout << name << ", " << what.state << ": " << results.size() << " rows so far"
+                      << std::endl;
+        }
+    }
+    if (!json.empty()) {
+        std::ofstream out(json);
+        bench::write_json(out, context.renderer(), TARN_COMMIT, results);
+    }
+    return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const std::exception& e) {
+        std::cerr << e.what() << "\n";
+        return 1;
+    }
+}
