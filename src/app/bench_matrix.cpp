@@ -136,7 +136,7 @@ double median(std::vector<double> values) {
 struct Row {
     std::string effect, variant;
     double time_share = 0.0; ///< of the best's time: the median over views
-    double mean = 0.0, worst = 0.0, p99 = 0.0, perceptual = 0.0, reference = -1.0, flux = -1.0;
+    double mean = 0.0, worst = 0.0, p99 = 0.0, perceptual = -1.0, reference = -1.0, flux = -1.0;
     bool on_front = false; ///< nothing is both quicker and nearer to the best
 };
 

@@ -2,6 +2,7 @@
 #include "app/command.hpp"
 #include "app/console.hpp"
 #include "app/picture.hpp"
+#include "app/plan_options.hpp"
 #include "app/report.hpp"
 #include "app/view_options.hpp"
 #include "core/error.hpp"
@@ -26,18 +27,51 @@ namespace {
 struct Words {
     ViewWords view;
     PictureWords picture;
+    PlanWords plan;
+    bool measure_plan = false;
     std::string scene, against;
     std::vector<std::string> outputs;
     bool reference = false;
 };
 
-int run_render(Words& words, const scene_files::OptionList& options) {
+/// How far a planned picture is from everything at its best, and how long both take.
+void print_measured(render::Renderer& renderer, const scene::View& everything,
+                    const scene::View& planned) {
+    struct Drawn {
+        Image image;
+        double ms;
+    };
+    const auto draw = [&](const scene::View& view) {
+        renderer.draw(view); // programs are made when they first run
+        glFinish();
+        const auto start = std::chrono::steady_clock::now();
+        renderer.move_waves(view.waves.time_s);
+        Drawn out{renderer.draw_again(), 0.0};
+        out.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+                     .count();
+        return out;
+    };
+    const Drawn best = draw(everything), got = draw(planned);
+    const image::Difference d = image::compare(got.image, best.image);
+    std::cout << "  measured: error " << fixed(100.0 * d.mean_relative, 4) << " % (95th "
+              << fixed(100.0 * d.p95_relative, 3) << " %), " << fixed(got.ms, 2)
+              << " ms instead of " << fixed(best.ms, 2) << " ms with reading back\n";
+}
+
+int run_render(Words& words, scene_files::OptionList options) {
     check_outputs(words.outputs);
+    words.plan.budget.validate();
+    if (!words.plan.asked() && (words.plan.explain || words.measure_plan))
+        throw Error("--explain and --measure need something to plan for",
+                    "add --max-error or --frame-time");
+    if (words.plan.asked() && words.reference)
+        throw Error("--reference draws everything; it cannot be planned",
+                    "leave out --max-error and --frame-time");
     if (!words.against.empty() && !std::filesystem::exists(words.against))
         throw Error("--against " + words.against + ": no such file",
                     "render it first, with --reference");
     scene::Scene scene = load_scene(words.scene, words.view);
-    const scene::View view = make_view(words.view, scene);
+    scene::View view = make_view(words.view, scene);
     if (view.settings.walk == scene::Walk::safety_exact ||
         view.settings.walk == scene::Walk::safety_radius)
         scene.safety_radii = scene_files::load_safety_radii(words.scene, scene);
@@ -56,6 +90,23 @@ int run_render(Words& words, const scene_files::OptionList& options) {
         const gpu::Context context;
         device = context.renderer();
         render::Renderer renderer(scene);
+        if (words.plan.asked()) {
+            const scene::View everything = scene::at_its_best(view);
+            const render::Plan plan =
+                render::make_plan(renderer, scene, view, words.plan.budget, progress);
+            end_progress();
+            view = plan.view;
+            for (const auto& [name, value] : options_of(plan))
+                options = with_option(options, name, value);
+            if (words.plan.explain || words.measure_plan)
+                std::cout << explained(plan);
+            else if (!plan.kept)
+                spdlog::warn("the budget cannot be kept: at most {:.2g} % of error, {:.3g} ms; "
+                             "--explain says why",
+                             100.0 * plan.predicted_error, plan.predicted_ms);
+            if (words.measure_plan)
+                print_measured(renderer, everything, view);
+        }
         setup_s = seconds();
         picture = renderer.draw(view, [&](double share) { progress.report(share, "rendering"); });
         end_progress();
@@ -108,6 +159,10 @@ void add_render(CLI::App& app, Run& run) {
         ->required();
     add_view_options(*c, words->view);
     add_picture_options(*c, words->picture);
+    add_plan_options(*c, words->plan);
+    c->add_flag(
+        "--measure", words->measure_plan,
+        "as --explain, and draw everything at its best, too: the plan's true error and time");
     c->add_flag("--reference", words->reference,
                 "by the double-precision CPU tracer: slow, needs no GPU");
     c->add_option("--against", words->against, "print how far the picture is from this .exr");

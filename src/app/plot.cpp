@@ -206,7 +206,9 @@ void draw_ways(const WayPlot& plot, const fs::path& path) {
                                     "#558b2f", "#00838f", "#6d4c41", "#8e24aa"};
     std::string data, curves;
     const auto line_of = [&](const WayPlot::Point& p) {
-        return text(p.time_share, " ", 100.0 * std::max(p.error, floor), " \"", p.name, "\"\n");
+        const bool named = p.error > floor; // those on the floor would hide each other
+        return text(p.time_share, " ", 100.0 * std::max(p.error, floor), " \"", named ? p.name : "",
+                    "\"\n");
     };
     std::vector<WayPlot::Point> front;
     for (const auto& p : plot.points)

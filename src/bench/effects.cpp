@@ -23,20 +23,6 @@ const char* name_of(Caustics method) {
 
 } // namespace
 
-scene::View at_its_best(scene::View view) {
-    scene::RenderSettings& s = view.settings;
-    s.walk = scene::Walk::cone_map; // exact
-    s.walk_setting = 0.0;
-    s.fresnel = scene::Fresnel::exact;
-    s.shadows = s.reflection = s.mirrored_land = s.refraction = s.spectral = s.thrown_back = true;
-    s.least_transmittance = 1e-4;
-    s.caustics = Caustics::splat;
-    s.caustic_texels = view.waves.texels;
-    s.caustic_photons = 2;
-    s.shaft_steps = 16;
-    return view;
-}
-
 std::vector<Variant> variants() {
     std::vector<Variant> out;
     const auto add = [&](const char* effect, const std::string& name, bool needs_waves,

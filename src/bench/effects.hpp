@@ -19,9 +19,6 @@ struct Variant {
     std::function<void(scene::View&)> apply; ///< changes a view at its best
 };
 
-/// A view with every part at its best, however long it takes: what the other ways are held against.
-scene::View at_its_best(scene::View view);
-
 /// Rows of the matrix: first the best, then `default`, what a person gets who says nothing, then
 /// the ways of each part.
 std::vector<Variant> variants();

@@ -83,7 +83,7 @@ std::vector<MatrixResult> run_matrix(const scene::Scene& scene, const MatrixScen
         view.settings.width_px = options.width_px;
         view.settings.height_px = options.height_px;
         view.settings.samples = options.samples;
-        view = at_its_best(view);
+        view = scene::at_its_best(view);
         const std::optional<Image> reference =
             options.reference ? options.reference(scene, view) : std::nullopt;
         Image best;

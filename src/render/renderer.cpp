@@ -719,18 +719,19 @@ void Renderer::draw_rows(int sample, int samples, int first_row, int rows) {
     }
 }
 
-Image Renderer::draw_blocks(int every) {
+void Renderer::draw_blocks(int every) {
     if (every < 1)
         throw Error(text("every ", every, "th block is asked for, must be at least 1"));
-    const int width = int(block_.counts.x), height = int(block_.counts.y);
-    // Whole blocks of the picture alone; the first ones stand in the middle of their share.
-    const int blocks_across = width / 8, blocks_down = height / 8;
-    const auto count = [&](int blocks) { return (blocks + every - 1 - every / 2) / every; };
-    const int across = count(blocks_across), down = count(blocks_down);
-    if (across < 1 || down < 1)
-        return {};
-    block_.tile = {8 * (every / 2), 8 * (every / 2), 8 * across,
-                   std::min(8 * down, hits_[0].height_px() / 8 * 8)};
+    // Whole blocks of the picture alone, the first in the middle of those that it stands for; as
+    // many rows of them as fit between the passes.
+    const auto count = [&](std::uint32_t pixels) {
+        return (int(pixels / 8) + every - 1 - every / 2) / every;
+    };
+    const int first = 8 * (every / 2);
+    block_.tile = {first, first, 8 * count(block_.counts.x),
+                   std::min(8 * count(block_.counts.y), hits_[0].height_px() / 8 * 8)};
+    if (block_.tile.z < 8 || block_.tile.w < 8)
+        return;
     block_.walk.z = block_.walk.w = 8 * (every - 1);
     for (int sample = 0; sample < samples_; ++sample) {
         set_sample(sample, samples_);
@@ -743,18 +744,22 @@ Image Renderer::draw_blocks(int every) {
         }
         draw_tile();
     }
+    block_.walk.z = block_.walk.w = 0;
+}
+
+Image Renderer::read_blocks(int every) const {
     const Image whole = read_back();
     Image out;
     out.width_px = block_.tile.z;
     out.height_px = block_.tile.w;
+    const auto place = [&](int v) { return block_.tile.x + v + (v >> 3) * 8 * (every - 1); };
     for (int y = 0; y < out.height_px; ++y)
         for (int x = 0; x < out.width_px; ++x) {
-            const auto at = [&](int v) { return v + block_.tile.x + (v >> 3) * block_.walk.z; };
-            const std::size_t i = std::size_t(at(y)) * std::size_t(width) + std::size_t(at(x));
+            const std::size_t i =
+                std::size_t(place(y)) * std::size_t(whole.width_px) + std::size_t(place(x));
             out.radiance.push_back(whole.radiance[i]);
             out.distance_m.push_back(whole.distance_m[i]);
         }
-    block_.walk.z = block_.walk.w = 0;
     return out;
 }
 

@@ -65,10 +65,12 @@ public:
     /// it
     void draw_rows(int sample, int samples, int first_row, int rows);
 
-    /// A sample of a prepared picture: each `every`th block of 8 x 8 pixels across and down, side
-    /// by side, with all their samples. What stands in them is what the whole picture shows there.
-    /// @param every  at least 1; empty if the picture holds no such block
-    Image draw_blocks(int every);
+    /// Draws a sample of a prepared picture, all its samples: each `every`th block of 8 x 8 pixels
+    /// across and down. What stands in them is what the whole picture shows there.
+    /// @param every  at least 1
+    void draw_blocks(int every);
+    /// What the last draw_blocks() drew, the blocks side by side; empty if the picture holds none.
+    Image read_blocks(int every) const;
 
     /// Reads heights, lakes and optics of the scene again, which somebody has changed; sizes and
     /// the photograph must be the same. Then prepare().

@@ -71,6 +71,19 @@ const WalkMethod& walk_method(Walk walk) {
                          [&](const WalkMethod& m) { return m.walk == walk; });
 }
 
+View at_its_best(View view) {
+    RenderSettings& s = view.settings;
+    s.least_transmittance = std::min(s.least_transmittance, 1e-4);
+    if (s.caustics != Caustics::off) {
+        s.caustics = Caustics::splat;
+        s.caustic_texels = view.waves.texels;
+        s.caustic_photons = 2;
+        if (s.shaft_steps > 0)
+            s.shaft_steps = std::max(s.shaft_steps, 16);
+    }
+    return view;
+}
+
 glm::dvec2 sample_offset(int index, int count) {
     if (count == 1)
         return {0.5, 0.5};

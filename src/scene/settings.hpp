@@ -107,6 +107,10 @@ struct View {
     std::optional<Overlay> overlay; ///< only the GPU's renderer looks at it
 };
 
+/// The same view with every part that it shows at its best, however long that takes: what cheaper
+/// ways are held against. Parts that are off stay off.
+View at_its_best(View view);
+
 /// Position of sample `index` of `count` inside the pixel, in [0, 1)^2: the centre for one sample,
 /// else Roberts' R2 low-discrepancy sequence (plastic number), the same on every device.
 glm::dvec2 sample_offset(int index, int count);
