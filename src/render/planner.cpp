@@ -28,6 +28,7 @@ struct Level {
     bool exact = false; ///< geometry says that nothing of it can be seen
     bool tried = false;
     double error = 0.0, saved_ms = 0.0;
+    BlockError found = {};
 };
 
 /// Ways of drawing one part, from the best, which stands for nothing, to the cheapest.
@@ -215,8 +216,9 @@ private:
             const Trial trial = draw(view);
             level.tried = true;
             level.saved_ms = best_.ms - trial.ms;
+            level.found = block_error(trial.blocks, best_.blocks);
             if (!level.exact)
-                level.error = block_error(trial.blocks, best_.blocks).at_most();
+                level.error = level.found.at_most();
             if (level.error <= 0.2 * ceiling || (std::isinf(ceiling) && level.error < 1e-4))
                 return;
         }
@@ -314,8 +316,20 @@ private:
         Trial drawn = best_;
         BlockError error;
         bool settled = false;
+        // What one part alone may give is measured already.
+        for (std::size_t k = 0; quickest && k < parts_.size(); ++k)
+            for (std::size_t j = 0; j < parts_[k].levels.size(); ++j) {
+                const Level& level = parts_[k].levels[j];
+                if (level.tried && level.error <= ceiling && best_.ms - level.saved_ms < drawn.ms) {
+                    chosen.assign(parts_.size(), 0);
+                    chosen[k] = j + 1;
+                    drawn.ms = best_.ms - level.saved_ms;
+                    error = level.found;
+                    settled = true;
+                }
+            }
         // Together parts may err less than in sum, or time may not add up: look, and try again.
-        for (int round = 0; round < 5; ++round) {
+        for (int round = 0; round < 7; ++round) {
             const Choice choice = best_choice(error_limit, ms_limit, quickest);
             if (choice == last)
                 break;
@@ -334,9 +348,11 @@ private:
             if (quickest && fits)
                 error_limit *=
                     std::clamp(0.95 * ceiling / std::max(at_most(choice, found), 1e-9), 1.0, 1.5);
-            else if (quickest)
-                error_limit *= 0.9 * ceiling / at_most(choice, found);
-            else if (!fits)
+            else if (quickest) { // this one no more, nor what is hardly better
+                double error_sum, saved_ms;
+                estimate(choice, error_sum, saved_ms);
+                error_limit = 0.98 * std::min(error_limit, error_sum);
+            } else if (!fits)
                 ms_limit *= 0.95 * within_ms / trial.ms;
             else
                 break;
