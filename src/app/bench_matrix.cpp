@@ -275,6 +275,7 @@ json measure_matrix(const MatrixWords& words) {
                 options.height_px = sizes[k].height_px;
                 options.samples = words.samples;
                 options.runs = words.runs;
+                options.budget = words.budget;
                 options.effects = k == 0 ? words.effects : std::vector<std::string>{"all"};
                 if (k == 0)
                     options.perceptual = image::visible_share;

@@ -1,6 +1,8 @@
 #pragma once
 /// @file bench_matrix.hpp  `tarn bench` without --intersection: ways of drawing x views x scenes,
 ///                         and the report about it.
+#include "render/planner.hpp"
+
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -13,7 +15,8 @@ struct MatrixWords {
     std::vector<std::string> effects, views;
     std::string sizes = "320x240"; ///< the first for everything, others for `all` alone
     std::string reference = "calm";
-    std::string cache; ///< folder of reference pictures
+    std::string cache;     ///< folder of reference pictures
+    render::Budget budget; ///< of the planner's row
     double wind_m_per_s = 6.0;
     int samples = 4, runs = 5;
 };

@@ -339,6 +339,10 @@ void add_bench(CLI::App& app, Run& run) {
     c->add_option("--samples", m.samples, "a pixel, of the pictures that are judged")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
+    c->add_option("--max-error", m.budget.max_error,
+                  "a row for what the planner makes of this mean relative error");
+    c->add_option("--frame-time", m.budget.frame_time_ms,
+                  "a row for what the planner makes of this time [ms]");
     c->add_option("--reference", m.reference,
                   "hold pictures of calm water, all or none against the double-precision tracer, "
                   "which takes its time and is kept")

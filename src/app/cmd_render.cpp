@@ -96,8 +96,7 @@ int run_render(Words& words, scene_files::OptionList options) {
                 render::make_plan(renderer, scene, view, words.plan.budget, progress);
             end_progress();
             view = plan.view;
-            for (const auto& [name, value] : options_of(plan))
-                options = with_option(options, name, value);
+            options = planned_options(options, plan);
             if (words.plan.explain || words.measure_plan)
                 std::cout << explained(plan);
             else if (!plan.kept)

@@ -2,6 +2,7 @@
 #include "app/command.hpp"
 #include "app/console.hpp"
 #include "app/picture.hpp"
+#include "app/plan_options.hpp"
 #include "app/scenario_map.hpp"
 #include "app/view_options.hpp"
 #include "core/error.hpp"
@@ -36,6 +37,7 @@ namespace fs = std::filesystem;
 struct Words {
     ViewWords view;
     PictureWords picture;
+    PlanWords plan;
     std::string scene, output, levels, cameras = "overview", times, extension = "png";
     std::vector<std::string> differences;
     int processes = 1, thumbnail_px = 480;
@@ -249,9 +251,21 @@ int Sweep::draw(const std::vector<Job>& jobs) {
                 move_level(refill(), plan_.levels_m[job.level], scene, true);
                 level = job.level;
             }
-            const scene::View view = make_view(words, scene);
+            scene::View view = make_view(words, scene);
             if (!renderer)
                 renderer = std::make_unique<render::Renderer>(scene);
+            scene_files::OptionList options = options_of(common_, plan_, job);
+            if (words_.plan.asked()) { // each picture shows something else
+                const render::Plan plan =
+                    render::make_plan(*renderer, scene, view, words_.plan.budget, {});
+                view = plan.view;
+                options = planned_options(options, plan);
+                end_progress();
+                if (words_.plan.explain)
+                    std::cout << job.name << "\n" << explained(plan);
+                else if (!plan.kept)
+                    spdlog::warn("{}: the budget cannot be kept; --explain says why", job.name);
+            }
             const Image picture = renderer->draw(view, [&](double share) {
                 progress.report((double(count) + share) / double(missing.size()), job.name);
             });
@@ -259,7 +273,7 @@ int Sweep::draw(const std::vector<Job>& jobs) {
             how.sidecar = true;
             write_picture(file(job).string(), how, picture, scene, view,
                           {.scene = words_.scene,
-                           .options = options_of(common_, plan_, job),
+                           .options = options,
                            .command = {},
                            .device = context.renderer(),
                            .time = describe_time(words, scene),
@@ -516,6 +530,7 @@ void add_sweep(CLI::App& app, Run& run) {
                   "it collects them");
     add_view_options(*c, words->view);
     add_picture_options(*c, words->picture);
+    add_plan_options(*c, words->plan);
     c->footer(
         "Pictures that are there, from the same scene and options, are not drawn again.\n"
         "Examples:\n"

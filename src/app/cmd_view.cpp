@@ -2,6 +2,7 @@
 #include "app/command.hpp"
 #include "app/console.hpp"
 #include "app/picture.hpp"
+#include "app/plan_options.hpp"
 #include "app/view_options.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
@@ -9,6 +10,8 @@
 #include "dem/refill.hpp"
 #include "dem/vectors.hpp"
 #include "geo/frame.hpp"
+#include "gpu/context.hpp"
+#include "render/planner.hpp"
 #include "scene_files/scene_folder.hpp"
 #include "view/window.hpp"
 
@@ -27,6 +30,7 @@ namespace fs = std::filesystem;
 struct Words {
     ViewWords view;
     PictureWords picture;
+    PlanWords plan;
     std::string scene, pictures = ".", log;
     std::vector<std::string> layers;
     bool egl = false;
@@ -188,6 +192,28 @@ private:
     fs::path folder_;
 };
 
+/// Chooses what the window begins with, for its first view; panels and options change it from
+/// there.
+void plan_start(const Words& words, const scene::Scene& scene, int width_px, int height_px,
+                view::Options& options) {
+    const gpu::Context context;
+    scene::Scene shown = scene;
+    ViewWords start = words.view;
+    start.size = text(width_px, "x", height_px);
+    scene::View view = make_view(start, shown);
+    view.settings.samples = 1; // as one flies
+    render::Renderer renderer(shown);
+    const render::Plan plan =
+        render::make_plan(renderer, shown, view, words.plan.budget, console_progress());
+    end_progress();
+    for (const auto& [name, value] : options_of(plan))
+        options[name] = value;
+    if (words.plan.explain)
+        std::cout << explained(plan) << std::flush;
+    else if (!plan.kept)
+        spdlog::warn("the budget cannot be kept; --explain says why");
+}
+
 int run_view(const Words& words, view::Options options) {
     const auto started = std::chrono::steady_clock::now();
     std::optional<std::string> next = words.scene;
@@ -226,6 +252,8 @@ int run_view(const Words& words, view::Options options) {
         int width = 1280, height = 800;
         if (const auto size = options.find("size"); size != options.end())
             std::sscanf(size->second.c_str(), "%dx%d", &width, &height);
+        if (first && words.plan.asked())
+            plan_start(words, scene, width, height, options);
         const std::string import =
             temporary ? "tarn import " + *next +
                             (words.view.level_m && first ? text(" --level ", *words.view.level_m)
@@ -265,6 +293,7 @@ void add_view(CLI::App& app, Run& run) {
     c->add_flag("--egl", words->egl, "an EGL context instead of the platform's own");
     add_view_options(*c, words->view);
     add_picture_options(*c, words->picture);
+    add_plan_options(*c, words->plan);
     c->footer("F1 in the window shows keys and mouse.\n"
               "Examples:\n  tarn view rotoma\n  tarn view rotoma --wind 5 --camera dive\n"
               "  tarn view dem.tif");
@@ -273,7 +302,8 @@ void add_view(CLI::App& app, Run& run) {
             apply_settings_file(*c, words->view);
             view::Options options;
             for (const auto& [name, value] : given_options(*c))
-                if (name != "pictures" && name != "egl" && name != "session-log")
+                if (name != "pictures" && name != "egl" && name != "session-log" &&
+                    name != "max-error" && name != "frame-time")
                     options[name] = value;
             return run_view(*words, options);
         };

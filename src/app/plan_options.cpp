@@ -1,5 +1,6 @@
 #include "app/plan_options.hpp"
 
+#include "app/picture.hpp"
 #include "core/text.hpp"
 
 #include <cstdio>
@@ -56,6 +57,17 @@ scene_files::OptionList options_of(const render::Plan& plan) {
         out.push_back({"caustic-photons", text(s.caustic_photons)});
         out.push_back({"shaft-steps", text(s.shaft_steps)});
     }
+    return out;
+}
+
+scene_files::OptionList planned_options(const scene_files::OptionList& options,
+                                        const render::Plan& plan) {
+    scene_files::OptionList out;
+    for (const auto& option : options)
+        if (option.first != "max-error" && option.first != "frame-time")
+            out.push_back(option);
+    for (const auto& [name, value] : options_of(plan))
+        out = with_option(out, name, value);
     return out;
 }
 

@@ -75,6 +75,17 @@ std::vector<MatrixResult> run_matrix(const scene::Scene& scene, const MatrixScen
             rows.push_back(std::move(v));
     std::vector<MatrixResult> results;
     render::Renderer renderer(scene);
+    if (options.budget.max_error || options.budget.frame_time_ms) {
+        options.budget.validate();
+        std::string name = "planned";
+        if (options.budget.max_error)
+            name += text(" to ", 100.0 * *options.budget.max_error, " %");
+        if (options.budget.frame_time_ms)
+            name += text(" to ", *options.budget.frame_time_ms, " ms");
+        rows.push_back({"all", name, false, [&](scene::View& v) {
+                            v = render::make_plan(renderer, scene, v, options.budget, {}).view;
+                        }});
+    }
     const double quantum_m = scene.ground.scale_m;
     for (const scene::NamedCamera& named : what.views) {
         scene::View view = what.view;

@@ -6,6 +6,7 @@
 #include "core/image.hpp"
 #include "core/progress.hpp"
 #include "image/compare.hpp"
+#include "render/planner.hpp"
 
 #include <functional>
 #include <iosfwd>
@@ -20,6 +21,8 @@ struct MatrixOptions {
     int samples = 4;                  ///< a pixel, of the pictures that are judged
     int runs = 5;                     ///< timed; the median counts
     std::vector<std::string> effects; ///< empty: all
+    /// What the planner keeps to in a row of its own; nothing asked: no such row.
+    render::Budget budget;
     /// What the picture at its best should be; nothing: not judged. Slow ones may be kept.
     std::function<std::optional<Image>(const scene::Scene&, const scene::View&)> reference;
     /// Share of pixels where a person would see a difference; empty: not asked.

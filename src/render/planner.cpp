@@ -328,6 +328,13 @@ private:
                     settled = true;
                 }
             }
+        if (settled) { // and what geometry proves goes with it
+            for (std::size_t k = 0; k < parts_.size(); ++k)
+                for (std::size_t j = 0; j < parts_[k].levels.size(); ++j)
+                    if (chosen[k] == 0 && parts_[k].levels[j].exact)
+                        chosen[k] = j + 1;
+            drawn = draw(view_of(chosen));
+        }
         // Together parts may err less than in sum, or time may not add up: look, and try again.
         for (int round = 0; round < 7; ++round) {
             const Choice choice = best_choice(error_limit, ms_limit, quickest);
