@@ -270,15 +270,15 @@ private:
                                        bool with_water) const {
         if (!with_water || !waves_) {
             const auto hit = trace_field(scene_.ground, with_water ? &scene_.water : nullptr,
-                                         origin, direction, infinity);
+                                         origin, direction, infinity, bottom_m_);
             if (!hit)
                 return {};
             return Meeting{*hit, hit->point.z, {0.0, 0.0}};
         }
         double t = 0.0;
         while (true) {
-            const auto hit =
-                trace_field(scene_.ground, &raised_, origin + t * direction, direction, infinity);
+            const auto hit = trace_field(scene_.ground, &raised_, origin + t * direction, direction,
+                                         infinity, bottom_m_);
             if (!hit)
                 return {};
             if (!hit->water)
