@@ -10,6 +10,8 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
+#include <set>
 
 namespace tarn::render {
 
@@ -235,13 +237,16 @@ private:
         return view;
     }
 
-    /// Of a choice by its parts alone.
-    void estimate(const Choice& choice, double& error, double& saved_ms) const {
-        error = saved_ms = 0.0;
+    /// Of a choice by its parts alone: errors add up at most; of the time each part leaves its
+    /// share (sums of what is saved might be more than there is).
+    void estimate(const Choice& choice, double& error, double& ms) const {
+        error = 0.0;
+        ms = best_.ms;
         for (std::size_t k = 0; k < parts_.size(); ++k)
             if (choice[k] > 0) {
-                error += parts_[k].levels[choice[k] - 1].error;
-                saved_ms += parts_[k].levels[choice[k] - 1].saved_ms;
+                const Level& level = parts_[k].levels[choice[k] - 1];
+                error += level.error;
+                ms *= std::max(1.0 - level.saved_ms / best_.ms, 1e-3);
             }
     }
 
@@ -279,29 +284,27 @@ private:
         }
     }
 
-    /// The choice that looks best under limits of estimated error and time.
-    Choice best_choice(double error_limit, double ms_limit, bool quickest) const {
-        Choice found(parts_.size(), 0);
-        double found_error = std::numeric_limits<double>::infinity(), found_saved = -found_error;
+    /// The choice that looks best under limits of estimated error and time, of those not looked at
+    /// yet; nothing: there is none.
+    std::optional<Choice> best_choice(double error_limit, double ms_limit, bool quickest,
+                                      const std::set<Choice>& seen) const {
+        std::optional<Choice> found;
+        double found_error = std::numeric_limits<double>::infinity(), found_ms = found_error;
         each_choice([&](const Choice& choice) {
             // Without waves there are neither, and without caustics no shafts.
             if ((is(choice, "waves", "a plane") &&
                  (level_of(choice, "caustics") > 0 || level_of(choice, "shafts") > 0)) ||
-                (is(choice, "caustics", "off") && level_of(choice, "shafts") > 0))
+                (is(choice, "caustics", "off") && level_of(choice, "shafts") > 0) ||
+                seen.count(choice))
                 return;
-            double error, saved;
-            estimate(choice, error, saved);
-            if (error > error_limit || best_.ms - saved > ms_limit)
+            double error, ms;
+            estimate(choice, error, ms);
+            if (error > error_limit || ms > ms_limit)
                 return;
-            // What makes no difference in time is not worth an error.
-            const double gain = saved - found_saved, slack = 0.005 * best_.ms;
-            const bool better = quickest
-                                    ? gain > slack || (gain > -slack && error < found_error)
-                                    : error < found_error || (error == found_error && gain > 0.0);
-            if (better) {
+            if (quickest ? ms < found_ms : error < found_error) {
                 found = choice;
                 found_error = error;
-                found_saved = saved;
+                found_ms = ms;
             }
         });
         return found;
@@ -312,7 +315,8 @@ private:
         const double within_ms =
             budget.frame_time_ms.value_or(std::numeric_limits<double>::infinity());
         double error_limit = ceiling, ms_limit = quickest ? 1e300 : within_ms;
-        Choice chosen(parts_.size(), 0), last;
+        Choice chosen(parts_.size(), 0);
+        std::set<Choice> seen;
         Trial drawn = best_;
         BlockError error;
         bool settled = false;
@@ -337,10 +341,11 @@ private:
         }
         // Together parts may err less than in sum, or time may not add up: look, and try again.
         for (int round = 0; round < 7; ++round) {
-            const Choice choice = best_choice(error_limit, ms_limit, quickest);
-            if (choice == last)
+            const auto best = best_choice(error_limit, ms_limit, quickest, seen);
+            if (!best)
                 break;
-            last = choice;
+            const Choice choice = *best;
+            seen.insert(choice);
             const Trial trial = draw(view_of(choice));
             const BlockError found = block_error(trial.blocks, best_.blocks);
             const bool fits = quickest ? at_most(choice, found) <= ceiling : trial.ms <= within_ms;
@@ -352,12 +357,15 @@ private:
                 error = found;
                 settled = true;
             }
+            // What looks no quicker than what is known need not be drawn.
+            if (quickest)
+                ms_limit = 0.98 * drawn.ms;
             if (quickest && fits)
                 error_limit *=
                     std::clamp(0.95 * ceiling / std::max(at_most(choice, found), 1e-9), 1.0, 1.5);
             else if (quickest) { // this one no more, nor what is hardly better
-                double error_sum, saved_ms;
-                estimate(choice, error_sum, saved_ms);
+                double error_sum, ms;
+                estimate(choice, error_sum, ms);
                 error_limit = 0.98 * std::min(error_limit, error_sum);
             } else if (!fits)
                 ms_limit *= 0.95 * within_ms / trial.ms;
@@ -365,7 +373,7 @@ private:
                 break;
         }
         if (!settled && !quickest) { // the quickest there is
-            chosen = best_choice(1e300, 1e300, true);
+            chosen = best_choice(1e300, 1e300, true, {}).value_or(chosen);
             drawn = draw(view_of(chosen));
             error = block_error(drawn.blocks, best_.blocks);
         }
