@@ -241,16 +241,22 @@ json measure_matrix(const MatrixWords& words) {
         for (std::size_t k = 0; k < sizes.size(); ++k) {
             const double aspect = double(sizes[k].width_px) / sizes[k].height_px;
             std::vector<scene::NamedCamera> views = bench::standard_views(scene, sun, aspect);
-            if (!words.views.empty()) {
+            const std::vector<std::string> wanted_views =
+                !words.views.empty() ? words.views
+                : gpu::is_software() ? std::vector<std::string>{"shore", "dive-up"} // or hours
+                                     : std::vector<std::string>{};
+            if (!wanted_views.empty()) {
                 std::vector<scene::NamedCamera> all = views, chosen;
                 for (const scene::NamedCamera& camera : scene.cameras)
                     all.push_back(camera);
                 std::string names;
                 for (const auto& v : all)
                     names += (names.empty() ? "" : ", ") + v.name;
-                for (const std::string& wanted : words.views) {
+                for (const std::string& wanted : wanted_views) {
                     const auto at = std::find_if(all.begin(), all.end(),
                                                  [&](const auto& v) { return v.name == wanted; });
+                    if (at == all.end() && words.views.empty())
+                        continue; // too shallow to dive in
                     if (at == all.end())
                         throw Error("--views: " + name + " has none called '" + wanted + "'",
                                     "use " + names);

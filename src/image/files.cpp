@@ -72,6 +72,14 @@ std::unique_ptr<OIIO::ImageInput> open(const fs::path& path) {
         spec.depth > 1)
         throw Error(
             text(path.string(), ": is ", spec.width, " x ", spec.height, ", not a usable size"));
+    // A header may lie. What deflate packs best shrinks to a thousandth; little files are let be.
+    std::error_code failed;
+    const double claimed = double(spec.image_bytes(true)),
+                 held = double(fs::file_size(path, failed));
+    if (!failed && claimed > 64e6 && claimed > 2000.0 * held)
+        throw Error(text(path.string(), ": says that it is ", spec.width, " x ", spec.height,
+                         " but has ", held, " bytes"),
+                    "the file is damaged");
     return in;
 }
 

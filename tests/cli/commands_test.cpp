@@ -325,7 +325,7 @@ TEST(Bench, BadInputGetsOneClearLineBeforeAnyWork) {
         EXPECT_EQ(o.code, 1);
         EXPECT_NE(o.err.find("not understood"), std::string::npos) << o.err;
     }
-    expect_one_line("tarn bench", 1, "add --intersection");
+    expect_one_line("tarn bench --methods grid", 1, "add --intersection");
     expect_one_line("tarn bench --intersection --size 9x", 1, "--size '9x' is not understood");
     expect_one_line("tarn bench --intersection --size 99999x9", 1, "width is 99999");
     expect_one_line("tarn bench --intersection --views up", 1, "no view is called 'up'");

@@ -7,6 +7,7 @@
 #include "support/files.hpp"
 
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <limits>
@@ -181,4 +182,20 @@ TEST(Annotate, ResizesAndPastes) {
     EXPECT_NEAR(sheet.bytes[std::size_t((0 * 20 + 16) * 3)], 200, 1);
     EXPECT_EQ(sheet.bytes[std::size_t((4 * 20 + 16) * 3)], 0);
     EXPECT_EQ(sheet.bytes[std::size_t((0 * 20 + 14) * 3)], 0);
+}
+
+// What the fuzzer found: 227 bytes that claim six gigabytes.
+TEST(Files, AHeaderThatLiesAboutItsSizeIsRefusedBeforeMemoryIsAskedFor) {
+    const std::string path =
+        std::string(TARN_SOURCE_DIR) + "/tests/fuzz/seeds/texture/lies_about_its_size.tif";
+    for (const auto& read : {std::function<void()>([&] { read_codes(path); }),
+                             std::function<void()>([&] { read_heights(path); }),
+                             std::function<void()>([&] { read_rgba(path); })})
+        try {
+            read();
+            FAIL() << "taken";
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find("says that it is"), std::string::npos)
+                << error.what();
+        }
 }
