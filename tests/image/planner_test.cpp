@@ -107,7 +107,7 @@ TEST(Planner, KeepsItsBudgetsAndIsQuicker) {
         const scene::Scene scene = scene::bowl(257);
         render::Renderer renderer(scene);
         for (const char* name : {"high", "shore", "dive-up"})
-            for (const double budget : {0.01, 0.05}) {
+            for (const double budget : {0.02}) {
                 const scene::View view = view_of(scene, name, wind);
                 const render::Plan plan =
                     render::make_plan(renderer, scene, view, {.max_error = budget}, {});
