@@ -190,6 +190,11 @@ TEST(Driven, TheLevelIsDraggedAndCounted) {
         desk.xdo(text("mousemove ", x, " ", slider));
         pause(0.4);
     }
+    // A machine that has other work takes longer to follow; the hand waits for it, held down.
+    for (int i = 0; i < 25 && desk.count("level") < 3; ++i) {
+        desk.xdo(text("mousemove ", 121 + i % 2 * 4, " ", slider));
+        pause(0.4);
+    }
     desk.xdo("mouseup 1");
     pause(4.0);
     const auto level = desk.last("level");
