@@ -76,13 +76,21 @@ std::pair<std::string, scene::Scene> named_scene(const std::string& word) {
     throw Error(word + ": is no scene", "name a scene folder, bowl, or mountain:NODES");
 }
 
+/// Changes with every build: a reference picture of another tracer is none.
+std::string program_mark() {
+    std::error_code failed;
+    const fs::path self = fs::read_symlink("/proc/self/exe", failed);
+    return text(TARN_COMMIT, " ", fs::file_size(self, failed), " ",
+                fs::last_write_time(self, failed).time_since_epoch().count());
+}
+
 /// Changes with everything that a reference picture depends on.
 std::string mark_of(const scene::Scene& scene, const scene::View& view) {
     const auto& c = view.camera;
     const auto& s = view.settings;
     std::ostringstream all;
     all.precision(17);
-    all << TARN_COMMIT << scene.ground.spacing_m << ' ' << scene.ground.offset_m << ' '
+    all << program_mark() << ' ' << scene.ground.spacing_m << ' ' << scene.ground.offset_m << ' '
         << scene.ground.scale_m << ' ' << scene.water.offset_m << ' ' << scene.water.scale_m << ' '
         << scene.ground.west_m << ' ' << scene.ground.north_m;
     for (const glm::dvec3& v : {c.position, c.forward, c.right, c.up, view.lighting.sun_direction,
@@ -90,7 +98,10 @@ std::string mark_of(const scene::Scene& scene, const scene::View& view) {
                                 scene.optics.absorption_per_m, scene.optics.backscattering_per_m})
         all << ' ' << v.x << ' ' << v.y << ' ' << v.z;
     for (const scene::WaterBand& b : scene.optics.bands)
-        all << ' ' << b.wavelength_nm << ' ' << b.absorption_per_m << ' ' << b.scattering_per_m;
+        all << ' ' << b.wavelength_nm << ' ' << b.absorption_per_m << ' ' << b.scattering_per_m
+            << ' ' << b.backscattering_per_m;
+    for (const LakeRecord& lake : scene.lakes)
+        all << ' ' << lake.level_m << ' ' << int(lake.bed);
     all << ' ' << c.fov_deg << ' ' << s.width_px << ' ' << s.height_px << ' ' << s.samples << ' '
         << scene.optics.index << ' ' << scene.look.tree_line_m << ' ' << scene.look.snow_line_m
         << ' ' << int(view.waves.model) << ' ' << view.waves.wind_m_per_s << ' '
@@ -199,11 +210,8 @@ std::vector<std::string> subjects_of(const json& all) {
     return out;
 }
 
-std::string percent(double share) {
-    char out[40];
-    std::snprintf(out, sizeof out, "%.3g %%", 100.0 * share);
-    return share < 0.0 ? "-" : out;
-}
+/// "-" for what was not measured.
+std::string figure(double share) { return share < 0.0 ? "-" : percent(share, 3); }
 
 std::string file_word(std::string words) {
     for (char& c : words)
@@ -312,9 +320,9 @@ void print_matrix(const json& all) {
         for (const Row& r : rows_of(all, subject)) {
             char line[240];
             std::snprintf(line, sizeof line, "  %-14s %-18s %6.3f %11s %11s %11s %9s %11s%s\n",
-                          r.effect.c_str(), r.variant.c_str(), r.time_share,
-                          percent(r.mean).c_str(), percent(r.worst).c_str(), percent(r.p99).c_str(),
-                          percent(r.perceptual).c_str(), percent(r.reference).c_str(),
+                          r.effect.c_str(), r.variant.c_str(), r.time_share, figure(r.mean).c_str(),
+                          figure(r.worst).c_str(), figure(r.p99).c_str(),
+                          figure(r.perceptual).c_str(), figure(r.reference).c_str(),
                           r.on_front ? "  *" : "");
             std::cout << line;
         }
@@ -354,7 +362,7 @@ int print_changes(const json& now, const json& then) {
         const double e = number(r.at("error"), "mean"), f = number(o.at("error"), "mean");
         if (std::abs(e - f) > std::max(0.05 * f, 1e-5)) {
             ++changed;
-            std::cout << "  " << key(r) << ": error " << percent(f) << " -> " << percent(e)
+            std::cout << "  " << key(r) << ": error " << figure(f) << " -> " << figure(e)
                       << (e > f ? " (worse)" : " (better)") << "\n";
         }
     }
@@ -392,9 +400,9 @@ void write_report(const json& all, const std::string& folder, const std::string&
         for (const Row& r : rows) {
             const char* bold = r.on_front ? "**" : "";
             md << "| " << r.effect << " | " << bold << r.variant << bold << " | "
-               << fixed(r.time_share, 3) << " | " << percent(r.mean) << " | " << percent(r.worst)
-               << " | " << percent(r.p99) << " | " << percent(r.perceptual) << " | "
-               << percent(r.reference) << " | " << percent(r.flux) << " |\n";
+               << fixed(r.time_share, 3) << " | " << figure(r.mean) << " | " << figure(r.worst)
+               << " | " << figure(r.p99) << " | " << figure(r.perceptual) << " | "
+               << figure(r.reference) << " | " << figure(r.flux) << " |\n";
             plot.points.push_back({r.effect, r.variant, r.time_share, r.mean, r.on_front});
         }
         draw_ways(plot, fs::path(folder) / chart);

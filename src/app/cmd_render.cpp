@@ -43,7 +43,6 @@ void print_measured(render::Renderer& renderer, const scene::View& everything,
     };
     const auto draw = [&](const scene::View& view) {
         renderer.draw(view); // programs are made when they first run
-        glFinish();
         const auto start = std::chrono::steady_clock::now();
         renderer.move_waves(view.waves.time_s);
         Drawn out{renderer.draw_again(), 0.0};
@@ -61,10 +60,10 @@ void print_measured(render::Renderer& renderer, const scene::View& everything,
 int run_render(Words& words, scene_files::OptionList options) {
     check_outputs(words.outputs);
     words.plan.budget.validate();
-    if (!words.plan.asked() && (words.plan.explain || words.measure_plan))
+    if (!words.plan.budget.asked() && (words.plan.explain || words.measure_plan))
         throw Error("--explain and --measure need something to plan for",
                     "add --max-error or --frame-time");
-    if (words.plan.asked() && words.reference)
+    if (words.plan.budget.asked() && words.reference)
         throw Error("--reference draws everything; it cannot be planned",
                     "leave out --max-error and --frame-time");
     if (!words.against.empty() && !std::filesystem::exists(words.against))
@@ -90,7 +89,7 @@ int run_render(Words& words, scene_files::OptionList options) {
         const gpu::Context context;
         device = context.renderer();
         render::Renderer renderer(scene);
-        if (words.plan.asked()) {
+        if (words.plan.budget.asked()) {
             const scene::View everything = scene::at_its_best(view);
             const render::Plan plan =
                 render::make_plan(renderer, scene, view, words.plan.budget, progress);

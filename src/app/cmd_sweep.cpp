@@ -255,7 +255,7 @@ int Sweep::draw(const std::vector<Job>& jobs) {
             if (!renderer)
                 renderer = std::make_unique<render::Renderer>(scene);
             scene_files::OptionList options = options_of(common_, plan_, job);
-            if (words_.plan.asked()) { // each picture shows something else
+            if (words_.plan.budget.asked()) { // each picture shows something else
                 const render::Plan plan =
                     render::make_plan(*renderer, scene, view, words_.plan.budget, {});
                 view = plan.view;

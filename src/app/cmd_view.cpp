@@ -252,7 +252,7 @@ int run_view(const Words& words, view::Options options) {
         int width = 1280, height = 800;
         if (const auto size = options.find("size"); size != options.end())
             std::sscanf(size->second.c_str(), "%dx%d", &width, &height);
-        if (first && words.plan.asked())
+        if (first && words.plan.budget.asked())
             plan_start(words, scene, width, height, options);
         const std::string import =
             temporary ? "tarn import " + *next +

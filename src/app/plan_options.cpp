@@ -9,12 +9,6 @@ namespace tarn::app {
 
 namespace {
 
-std::string percent(double share) {
-    char out[40];
-    std::snprintf(out, sizeof out, "%.2g %%", 100.0 * share);
-    return out;
-}
-
 std::string milliseconds(double ms) {
     char out[40];
     std::snprintf(out, sizeof out, "%.3g ms", ms);
@@ -77,11 +71,11 @@ std::string explained(const render::Plan& plan) {
         char line[160];
         std::snprintf(line, sizeof line, "  %-5s %-10s %-30s error %8s, saves %9s", //
                       d.taken ? "takes" : "not", d.part.c_str(), d.choice.c_str(),
-                      percent(d.error).c_str(), milliseconds(d.saved_ms).c_str());
+                      percent(d.error, 2).c_str(), milliseconds(d.saved_ms).c_str());
         out += line + std::string("  ") + d.why + "\n";
     }
     out += text("  planned in ", fixed(plan.planning_s, 2), " s by ", plan.trials, " trials of ",
-                plan.blocks, " blocks: at most ", percent(plan.predicted_error), " of error, ",
+                plan.blocks, " blocks: at most ", percent(plan.predicted_error, 2), " of error, ",
                 milliseconds(plan.predicted_ms), " instead of ", milliseconds(plan.everything_ms),
                 plan.kept ? "" : "; THE BUDGET CANNOT BE KEPT, this comes nearest", "\n");
     out += "  the same by hand:";

@@ -10,7 +10,6 @@ namespace tarn::app {
 struct PlanWords {
     render::Budget budget;
     bool explain = false;
-    bool asked() const { return budget.max_error || budget.frame_time_ms; }
 };
 
 /// Adds --max-error, --frame-time and --explain.

@@ -61,12 +61,11 @@ std::vector<Variant> variants() {
             v.settings.caustic_texels = std::min(v.settings.caustic_texels, texels);
         });
     add("caustics", "off", true, [](View& v) { v.settings.caustics = Caustics::off; });
-    for (const auto& [texels, photons] : {std::pair{64, 1}, {128, 1}, {256, 1}, {512, 1}})
-        add("caustics", text("splat ", texels), true,
-            [texels = texels, photons = photons](View& v) {
-                v.settings.caustic_texels = std::min(texels, v.waves.texels);
-                v.settings.caustic_photons = photons;
-            });
+    for (const int texels : {64, 128, 256, 512})
+        add("caustics", text("splat ", texels), true, [texels](View& v) {
+            v.settings.caustic_texels = std::min(texels, v.waves.texels);
+            v.settings.caustic_photons = 1;
+        });
     for (const Caustics method : {Caustics::photon_map, Caustics::mesh, Caustics::back})
         add("caustics", name_of(method), true, [method](View& v) {
             v.settings.caustics = method;

@@ -1,7 +1,6 @@
 #pragma once
 /// @file effects.hpp  What a picture can be made of more cheaply, one part at a time: the rows of
-/// the
-///                    matrix that `tarn bench` measures.
+/// `tarn bench`, and the views that they are measured in.
 #include "scene/scene.hpp"
 #include "scene/settings.hpp"
 

@@ -75,7 +75,7 @@ std::vector<MatrixResult> run_matrix(const scene::Scene& scene, const MatrixScen
             rows.push_back(std::move(v));
     std::vector<MatrixResult> results;
     render::Renderer renderer(scene);
-    if (options.budget.max_error || options.budget.frame_time_ms) {
+    if (options.budget.asked()) {
         options.budget.validate();
         std::string name = "planned";
         if (options.budget.max_error)

@@ -25,6 +25,14 @@ inline std::string fixed(double value, int digits) {
     return out.str();
 }
 
+/// .0123 -> "1.23 %", to so many digits that count.
+inline std::string percent(double share, int digits) {
+    std::ostringstream out;
+    out.precision(digits);
+    out << 100.0 * share << " %";
+    return out.str();
+}
+
 /// 7 with three digits -> "007".
 inline std::string numbered(int number, std::size_t digits) {
     const std::string plain = std::to_string(number);

@@ -32,26 +32,19 @@ Difference compare(const Image& got, const Image& expected) {
     Difference out;
     if (got.radiance.empty())
         return out;
-    double mean = 0.0;
     std::vector<double> brightness;
-    for (const glm::vec3& c : expected.radiance) {
+    for (const glm::vec3& c : expected.radiance)
         brightness.push_back((double(c.r) + c.g + c.b) / 3.0);
-        mean += brightness.back() / double(expected.radiance.size());
-    }
-    const double floor = std::max(1e-3 * mean, 1e-12);
+    const double floor = relative_floor(expected);
     double squared = 0.0;
     std::vector<double> relative(got.radiance.size());
     for (std::size_t i = 0; i < got.radiance.size(); ++i) {
-        for (int k = 0; k < 3; ++k) {
-            const double a = got.radiance[i][k], b = expected.radiance[i][k];
-            if (!std::isfinite(a) || !std::isfinite(b)) {
-                out.finite = false;
-                relative[i] = std::numeric_limits<double>::infinity();
-                continue;
-            }
-            relative[i] += std::abs(a - b) / std::max(std::abs(b), floor) / 3.0;
-            squared += (a - b) * (a - b) / (3.0 * double(got.radiance.size()));
-        }
+        relative[i] = relative_error(got.radiance[i], expected.radiance[i], floor);
+        out.finite = out.finite && std::isfinite(relative[i]);
+        const glm::dvec3 by = glm::dvec3(got.radiance[i]) - glm::dvec3(expected.radiance[i]);
+        if (std::isfinite(relative[i]))
+            squared +=
+                (by.x * by.x + by.y * by.y + by.z * by.z) / (3.0 * double(got.radiance.size()));
         if (relative[i] > out.max_relative) {
             out.max_relative = relative[i];
             out.worst_pixel = i;

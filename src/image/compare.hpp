@@ -5,8 +5,7 @@
 namespace tarn::image {
 
 /// Figures of a picture held against a reference, linear values.
-/// Relative error of a pixel: |got - expected| / max(|expected|, floor), the mean over channels;
-/// floor is a thousandth of the reference's mean radiance, so that black pixels do not rule.
+/// Relative error of a pixel: relative_error() of core/image.hpp.
 struct Difference {
     double mean_relative = 0.0, p95_relative = 0.0, p99_relative = 0.0, max_relative = 0.0;
     double psnr_db = 0.0;        ///< peak = the reference's 99th percentile; infinity when equal

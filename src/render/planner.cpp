@@ -91,15 +91,15 @@ private:
         double pixels_ms = std::numeric_limits<double>::infinity();
         for (int i = 0; i < runs; ++i) {
             const auto start = Clock::now();
-            if (software)
-                renderer_.draw_blocks(every_);
+            if (software) // beams are a whole picture's, which is no time of the blocks
+                renderer_.draw_blocks(every_, false);
             else
                 renderer_.draw_once();
             glFinish();
             pixels_ms = std::min(pixels_ms, ms_since(start));
         }
         if (!software)
-            renderer_.draw_blocks(every_);
+            renderer_.draw_blocks(every_, false);
         trial.blocks = renderer_.read_blocks(every_);
         const scene::RenderSettings& s = view.settings;
         const double share =
@@ -429,18 +429,13 @@ BlockError block_error(const Image& got, const Image& expected) {
     out.blocks = across * down;
     if (out.blocks == 0)
         return out;
-    double brightness = 0.0;
-    for (const glm::vec3& c : expected.radiance)
-        brightness += (double(c.r) + c.g + c.b) / 3.0 / double(expected.radiance.size());
-    const double floor = std::max(1e-3 * brightness, 1e-12);
+    const double floor = relative_floor(expected);
     std::vector<double> errors(std::size_t(out.blocks), 0.0);
     for (int y = 0; y < 8 * down; ++y)
         for (int x = 0; x < 8 * across; ++x) {
             const std::size_t i = std::size_t(y) * std::size_t(expected.width_px) + std::size_t(x);
-            for (int k = 0; k < 3; ++k)
-                errors[std::size_t(y / 8 * across + x / 8)] +=
-                    std::abs(double(got.radiance[i][k]) - double(expected.radiance[i][k])) /
-                    std::max(std::abs(double(expected.radiance[i][k])), floor) / 192.0;
+            errors[std::size_t(y / 8 * across + x / 8)] +=
+                relative_error(got.radiance[i], expected.radiance[i], floor) / 64.0;
         }
     for (const double e : errors)
         out.mean += e / out.blocks;

@@ -1,7 +1,6 @@
 #pragma once
-/// @file planner.hpp  No more than a scene needs: the cheapest way of drawing a view that keeps to
-/// a
-///                    budget of error, or the truest that keeps to one of time.
+/// @file planner.hpp  No more than a scene needs: the quickest way of drawing a view within a
+/// budget of error, or the truest within one of time.
 ///
 /// Nothing here is a matter of taste: every way that could be left out is tried on a sample of this
 /// very picture (each nth block of 8 x 8 pixels), against the same blocks with everything at its
@@ -19,6 +18,7 @@ namespace tarn::render {
 struct Budget {
     std::optional<double> max_error;     ///< mean relative radiance error, [1e-4, 10]
     std::optional<double> frame_time_ms; ///< of one picture, all samples and waves, [.01, 1e7]
+    bool asked() const { return max_error || frame_time_ms; }
     /// @throws tarn::Error  naming the field, its value and the legal range
     void validate() const;
 };

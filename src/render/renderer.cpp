@@ -634,6 +634,9 @@ void Renderer::draw_tile() {
 }
 
 void Renderer::find_beams() {
+    if (on_pass)
+        on_pass("beams");
+    bind_walk(!under_water());
     passes_.at(walk_).beams.use();
     glDispatchCompute(GLuint((beams_.width_px() + 7) / 8), GLuint((beams_.height_px() + 3) / 4), 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
@@ -641,7 +644,6 @@ void Renderer::find_beams() {
 
 void Renderer::find_first_hits() {
     view_buffer_.write(&block_, sizeof block_);
-    bind_walk(!under_water());
     find_beams();
     const WalkPasses& pass = passes_.at(walk_);
     pass.first_hit.use();
@@ -690,12 +692,8 @@ void Renderer::draw_once() {
     const int width = int(block_.counts.x), height = int(block_.counts.y),
               rows = hits_[0].height_px();
     view_buffer_.write(&block_, sizeof block_);
-    if (on_pass)
-        on_pass("beams");
-    if (block_.offset.z == 0.0f) { // beams hold whole pixels: the first sample's serve all
-        bind_walk(!under_water());
+    if (block_.offset.z == 0.0f) // beams hold whole pixels: the first sample's serve all
         find_beams();
-    }
     for (int top = 0; top < height; top += rows) {
         block_.tile = {0, top, width, std::min(rows, height - top)};
         draw_tile();
@@ -707,56 +705,54 @@ void Renderer::draw_rows(int sample, int samples, int first_row, int rows) {
               most = hits_[0].height_px();
     set_sample(sample, samples);
     view_buffer_.write(&block_, sizeof block_);
-    if (sample == 0 && first_row == 0) {
-        if (on_pass)
-            on_pass("beams");
-        bind_walk(!under_water());
+    if (sample == 0 && first_row == 0)
         find_beams();
-    }
     for (int top = first_row; top < last; top += most) {
         block_.tile = {0, top, width, std::min(most, last - top)};
         draw_tile();
     }
 }
 
-void Renderer::draw_blocks(int every) {
-    if (every < 1)
-        throw Error(text("every ", every, "th block is asked for, must be at least 1"));
-    // Whole blocks of the picture alone, the first in the middle of those that it stands for; as
-    // many rows of them as fit between the passes.
+Renderer::Blocks Renderer::blocks_of(int every) const {
     const auto count = [&](std::uint32_t pixels) {
         return (int(pixels / 8) + every - 1 - every / 2) / every;
     };
-    const int first = 8 * (every / 2);
-    block_.tile = {first, first, 8 * count(block_.counts.x),
-                   std::min(8 * count(block_.counts.y), hits_[0].height_px() / 8 * 8)};
-    if (block_.tile.z < 8 || block_.tile.w < 8)
+    return {8 * (every / 2), 8 * (every - 1), 8 * count(block_.counts.x),
+            8 * count(block_.counts.y)};
+}
+
+void Renderer::draw_blocks(int every, bool find_new_beams) {
+    if (every < 1)
+        throw Error(text("every ", every, "th block is asked for, must be at least 1"));
+    const Blocks blocks = blocks_of(every);
+    if (blocks.width_px < 8 || blocks.height_px < 8)
         return;
-    block_.walk.z = block_.walk.w = 8 * (every - 1);
+    block_.walk.z = block_.walk.w = blocks.skip_px;
+    const int most = std::max(8, hits_[0].height_px() / 8 * 8);
     for (int sample = 0; sample < samples_; ++sample) {
         set_sample(sample, samples_);
         view_buffer_.write(&block_, sizeof block_);
-        if (sample == 0) {
-            if (on_pass)
-                on_pass("beams");
-            bind_walk(!under_water());
+        if (sample == 0 && find_new_beams)
             find_beams();
+        for (int top = 0; top < blocks.height_px; top += most) {
+            block_.tile = {blocks.first_px, blocks.place(top), blocks.width_px,
+                           std::min(most, blocks.height_px - top)};
+            draw_tile();
         }
-        draw_tile();
     }
     block_.walk.z = block_.walk.w = 0;
 }
 
 Image Renderer::read_blocks(int every) const {
+    const Blocks blocks = blocks_of(every);
     const Image whole = read_back();
     Image out;
-    out.width_px = block_.tile.z;
-    out.height_px = block_.tile.w;
-    const auto place = [&](int v) { return block_.tile.x + v + (v >> 3) * 8 * (every - 1); };
+    out.width_px = blocks.width_px;
+    out.height_px = blocks.height_px;
     for (int y = 0; y < out.height_px; ++y)
         for (int x = 0; x < out.width_px; ++x) {
-            const std::size_t i =
-                std::size_t(place(y)) * std::size_t(whole.width_px) + std::size_t(place(x));
+            const std::size_t i = std::size_t(blocks.place(y)) * std::size_t(whole.width_px) +
+                                  std::size_t(blocks.place(x));
             out.radiance.push_back(whole.radiance[i]);
             out.distance_m.push_back(whole.distance_m[i]);
         }

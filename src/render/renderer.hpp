@@ -67,8 +67,9 @@ public:
 
     /// Draws a sample of a prepared picture, all its samples: each `every`th block of 8 x 8 pixels
     /// across and down. What stands in them is what the whole picture shows there.
-    /// @param every  at least 1
-    void draw_blocks(int every);
+    /// @param every           at least 1
+    /// @param find_new_beams  false: those of the last call serve, the view is the same
+    void draw_blocks(int every, bool find_new_beams = true);
     /// What the last draw_blocks() drew, the blocks side by side; empty if the picture holds none.
     Image read_blocks(int every) const;
 
@@ -146,6 +147,14 @@ private:
         gpu::ComputeProgram primary, surface, secondary, shadow, sunlit, shade;
     };
 
+    /// Where the blocks of a sample lie: whole ones of the picture alone, the first in the middle
+    /// of those that it stands for.
+    struct Blocks {
+        int first_px, skip_px;   ///< before the first, and after each
+        int width_px, height_px; ///< of all, side by side
+        int place(int px) const { return first_px + px + (px >> 3) * skip_px; } ///< in the picture
+    };
+    Blocks blocks_of(int every) const;
     void upload_scene();
     void use_shade();
     std::string air_defines() const;

@@ -63,6 +63,21 @@ TEST(Planner, BlocksAreThoseOfTheWholePicture) {
         }
         EXPECT_EQ(renderer.draw(view).radiance, whole.radiance) << "the whole picture afterwards";
     }
+    // So large that its rows are drawn in strips: 137 blocks down, 124 a strip.
+    scene::View large = view_of(scene, "shore", 0.0);
+    large.settings.width_px = 4200;
+    large.settings.height_px = 1100;
+    large.settings.shadows = large.settings.reflection = large.settings.refraction = false;
+    const Image whole = renderer.draw(large);
+    renderer.draw_blocks(1);
+    const Image blocks = renderer.read_blocks(1);
+    ASSERT_EQ(blocks.height_px, 1096);
+    std::size_t different = 0;
+    for (int y = 0; y < blocks.height_px; ++y)
+        for (int x = 0; x < blocks.width_px; ++x)
+            different += blocks.radiance[std::size_t(y * blocks.width_px + x)] !=
+                         whole.radiance[std::size_t(y * whole.width_px + x)];
+    EXPECT_EQ(different, 0u);
     scene::View tiny = view_of(scene, "shore", 0.0);
     tiny.settings.width_px = 7;
     renderer.prepare(tiny);
