@@ -28,12 +28,14 @@ struct Field {
     vec2 cone;         // cone map texel -> units, of the ground's (x) and the surface's (y)
     vec2 slope;        // its steepest slopes, units a cell
     float setting;     // of methods that have one: steps, or rays' least stride
+    float bend;        // 1/m: level ground falls by this times the squared distance (src/scene/curvature.hpp)
 };
 
 // field_of — the field that a view block describes.
 Field field_of(ViewBlock view) {
     return Field(view.grid.xy - 1.0, view.inverse_size.xy, view.units.x, view.units.yz, view.units.w, view.bounds.w,
-                 view.slab.x, view.slab.y, view.base.z, view.walk.x, view.walk.y, view.bounds.xy, view.slab.zw, view.bounds.z);
+                 view.slab.x, view.slab.y, view.base.z, view.walk.x, view.walk.y, view.bounds.xy, view.slab.zw, view.bounds.z,
+                 view.base.w);
 }
 
 // Origin and direction per metre of path: columns, rows, height [m]. Columns and rows count from the
@@ -44,6 +46,7 @@ struct Ray {
     vec3 origin;
     vec3 direction;
     float begin;    // metres along it: nothing is met before
+    float bend;     // 1/m: how it rises above its first direction over level ground (air_ray), 0 in water
 };
 
 struct Hit {
@@ -53,11 +56,28 @@ struct Hit {
     vec2 inside;  // position in the cell, [0, 1]
 };
 
-// ray_from — a ray from node `base` + origin.xy (columns, rows) at height origin.z.
+// ray_from — a ray from node `base` + origin.xy (columns, rows) at height origin.z; a straight one.
 //
 //   direction  scene axes (x east, y north), unit
 Ray ray_from(Field field, vec2 base, vec3 origin, vec3 direction) {
-    return Ray(base, origin, vec3(direction.x * field.per_spacing, -direction.y * field.per_spacing, direction.z), 0.0);
+    return Ray(base, origin, vec3(direction.x * field.per_spacing, -direction.y * field.per_spacing, direction.z), 0.0, 0.0);
+}
+
+// air_ray — the same through air, which may go for kilometres. Heights count from level ground, which falls away
+//           below a line of sight: in such heights the line is a parabola. Only programs with TARN_CURVED know of it.
+Ray air_ray(Field field, vec2 base, vec3 origin, vec3 direction) {
+    Ray ray = ray_from(field, base, origin, direction);
+    ray.bend = field.bend * dot(direction.xy, direction.xy);
+    return ray;
+}
+
+// climb_of — metres of height a metre of path after t metres.
+float climb_of(Ray ray, float t) {
+#ifdef TARN_CURVED
+    return ray.direction.z + 2.0 * ray.bend * t;
+#else
+    return ray.direction.z;
+#endif
 }
 
 // bilinear — heights in gather order (0,1) (1,1) (1,0) (0,0), columns and rows.
@@ -100,10 +120,62 @@ struct Span {
     vec2 inverse;     // 1 / d
     float oz, dz;     // height in units, and per metre
     float t, t_end;   // begin and end [m]
-    float slack;      // rounding of oz + t dz anywhere in the span, doubled
+    float slack;      // rounding of height_at() anywhere in the span, doubled
     vec2 ahead;       // 1 where a cell's far border is the upper one, else 0
     vec2 low, high;   // first and last cell of the field, from ray.base
+    float bend;       // of the ray, in units
 };
+
+// height_at — of a ray after t metres [units].
+float height_at(Span span, float t) {
+#ifdef TARN_CURVED
+    return span.oz + t * (span.dz + t * span.bend);
+#else
+    return span.oz + t * span.dz;
+#endif
+}
+
+// climb_at — how fast it climbs there [units a metre]. A curved ray stays above its tangent: what the tangent clears,
+//            the ray clears.
+float climb_at(Span span, float t) {
+#ifdef TARN_CURVED
+    return span.dz + 2.0 * t * span.bend;
+#else
+    return span.dz;
+#endif
+}
+
+// sag_between — how far a ray's chord between two path lengths stands above it, times four [units]: of a Gap's curve.
+float sag_between(Span span, float t, float t_out) {
+#ifdef TARN_CURVED
+    return span.bend * (t_out - t) * (t_out - t);
+#else
+    return 0.0;
+#endif
+}
+
+// lowest_between — no more than the ray's height anywhere between two path lengths.
+float lowest_between(Span span, float t, float t_out) {
+#ifdef TARN_CURVED
+    return height_at(span, t) + min(climb_at(span, t), 0.0) * (t_out - t);
+#else
+    return span.oz + (span.dz < 0.0 ? t_out : t) * span.dz;
+#endif
+}
+
+#ifdef TARN_CURVED
+// passes_height — path lengths at which a ray passes a height that it starts `above`, as it falls (x, never: far) and as
+//                 it rises (y).
+vec2 passes_height(float above, float dz, float bend) {
+    const float never = 1e30;
+    float d = dz * dz - 4.0 * bend * above;
+    if (d < 0.0)
+        return vec2(never);
+    float root = sqrt(d), q = dz < 0.0 ? 0.5 * (root - dz) : min(-0.5 * (root + dz), -1e-30);
+    float near = above / q, far = dz < 0.0 ? q / max(bend, 1e-30) : never;
+    return dz < 0.0 ? vec2(above > 0.0 ? near : never, far) : vec2(never, above < 0.0 ? near : never);
+}
+#endif
 
 // clip_ray — cut to the field's sides, its highest node and the bottom of the block of earth.
 //
@@ -128,7 +200,18 @@ bool clip_ray(Field field, Ray ray, float t_max, out Span span) {
     // Nothing is higher than the highest node or lower than the bottom. The slab is widened by the
     // rounding of oz + t dz: ground is only passed over if it is missed by more than this.
     float slack = 3e-7 * (abs(oz) + abs(dz) * max(t_end, 0.0)) + 1e-6 * field.per_m;
-    float to_top = field.top + slack - oz, to_bottom = field.bottom - oz;
+    float to_top = field.top + slack - oz, to_bottom = field.bottom - oz, bend = 0.0;
+#ifdef TARN_CURVED
+    bend = ray.bend * field.per_m;
+    vec2 top_at = passes_height(-to_top, dz, bend), bottom_at = passes_height(-to_bottom, dz, bend);
+    if (to_top < 0.0)
+        t = max(t, top_at.x);
+    t_end = min(t_end, top_at.y);
+    if (to_bottom > 0.0)
+        t = max(t, bottom_at.y);
+    else
+        t_end = min(t_end, bottom_at.x);
+#else
     if (abs(ray.direction.z) > 1e-12) {
         float rise = 1.0 / dz;
         float t_top = to_top * rise, t_bottom = to_bottom * rise;
@@ -137,8 +220,9 @@ bool clip_ray(Field field, Ray ray, float t_max, out Span span) {
     } else if (to_top < 0.0 || to_bottom > 0.0) {
         return false;
     }
-    slack = 3e-7 * (abs(oz) + abs(dz) * max(t_end, 0.0)) + 1e-6 * field.per_m;
-    span = Span(o, d, inverse, oz, dz, t, t_end, slack, vec2(greaterThan(d, vec2(0.0))), low, high - 1.0);
+#endif
+    slack = 3e-7 * (abs(oz) + (abs(dz) + bend * max(t_end, 0.0)) * max(t_end, 0.0)) + 1e-6 * field.per_m;
+    span = Span(o, d, inverse, oz, dz, t, t_end, slack, vec2(greaterThan(d, vec2(0.0))), low, high - 1.0, bend);
     return t < t_end;
 }
 
@@ -195,9 +279,10 @@ Meeting look_into(sampler2D heights, Field field, Ray ray, Span span, vec2 cell,
     vec2 corner = span.o - cell;
     vec2 p_in = clamp(corner + t * span.d, 0.0, 1.0), p_out = clamp(corner + t_out * span.d, 0.0, 1.0);
     vec2 run = p_out - p_in;
-    float bend = -run.x * run.y, z_in = span.oz + t * span.dz, z_out = span.oz + t_out * span.dz;
+    float bend = -run.x * run.y, z_in = height_at(span, t), z_out = height_at(span, t_out);
     Meeting m;
-    m.ground = Gap(z_in - bilinear(ground, p_in), z_out - bilinear(ground, p_out), bend * twist(ground));
+    float sag = sag_between(span, t, t_out);
+    m.ground = Gap(z_in - bilinear(ground, p_in), z_out - bilinear(ground, p_out), bend * twist(ground) + sag);
     m.water = m.ground;
     m.wet = wet;
     m.met = crosses(m.ground);
@@ -205,7 +290,7 @@ Meeting look_into(sampler2D heights, Field field, Ray ray, Span span, vec2 cell,
         vec4 water = textureGather(heights, middle, 1);
         m.wet = min(min(water.x, water.y), min(water.z, water.w)) > 0.0;
         water = water * field.water.y + field.water.x;
-        m.water = Gap(z_in - bilinear(water, p_in), z_out - bilinear(water, p_out), bend * twist(water));
+        m.water = Gap(z_in - bilinear(water, p_in), z_out - bilinear(water, p_out), bend * twist(water) + sag);
         m.met = m.met || (m.wet && crosses(m.water));
     }
     return m;

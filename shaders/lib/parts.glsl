@@ -85,6 +85,25 @@ Part camera_part(ViewBlock view, ivec2 pixel) {
                 view.options.y, view.options.z > 0.5);
 }
 
+// height_after, direction_after — of a part after t metres: in air, by how far level ground has fallen away below it
+//                                 (air_ray in lib/heightfield.glsl).
+float height_after(ViewBlock view, Part part, float t) {
+    float height = part.origin.z + t * part.direction.z;
+#ifdef TARN_CURVED
+    if (!part.in_water)
+        height += view.base.w * dot(part.direction.xy, part.direction.xy) * t * t;
+#endif
+    return height;
+}
+
+vec3 direction_after(ViewBlock view, Part part, float t) {
+#ifdef TARN_CURVED
+    if (!part.in_water)
+        return normalize(part.direction + vec3(0.0, 0.0, 2.0 * view.base.w * dot(part.direction.xy, part.direction.xy) * t));
+#endif
+    return part.direction;
+}
+
 // The water's surface where part 0 met it.
 struct Surface {
     vec2 slope;     // rise per metre east and north
@@ -98,16 +117,16 @@ float surface_level(sampler2D heights, ViewBlock view, Part first, End end) {
 }
 
 // calm_surface — where there are no waves.
-Surface calm_surface(Part first, End end) {
-    return Surface(vec2(0.0), first.in_water ? first.level : first.origin.z + end.t * first.direction.z);
+Surface calm_surface(ViewBlock view, Part first, End end) {
+    return Surface(vec2(0.0), first.in_water ? first.level : height_after(view, first, end.t));
 }
 
 // split_part — part 1 or 2 from where part 0 met the surface.
 Part split_part(ViewBlock view, Part first, End end, Surface surface, int number) {
-    Split split = split_at_surface(first.direction, normalize(vec3(-surface.slope, 1.0)), view.optics.x,
+    Split split = split_at_surface(direction_after(view, first, end.t), normalize(vec3(-surface.slope, 1.0)), view.optics.x,
                                    first.in_water, (view.counts.z & TARN_FLAG_SCHLICK) != 0u);
     bool mirrored = number == 1;
-    return Part(vec2(end.cell), vec3(end.inside, first.origin.z + end.t * first.direction.z),
+    return Part(vec2(end.cell), vec3(end.inside, height_after(view, first, end.t)),
                 mirrored ? split.reflected : split.refracted, mirrored ? split.mirror : split.through,
                 mirrored == first.in_water, surface.level, (end.flags & end_bed_known) != 0u);
 }
@@ -130,7 +149,11 @@ float reach(ViewBlock view, Part part) {
     return part.in_water ? min(to_surface(part), view.optics.y) : far_m;
 }
 
-Ray ray_of(ViewBlock view, Part part) { return ray_from(field_of(view), part.base, part.origin, part.direction); }
+Ray ray_of(ViewBlock view, Part part) {
+    Field field = field_of(view);
+    return part.in_water ? ray_from(field, part.base, part.origin, part.direction)
+                         : air_ray(field, part.base, part.origin, part.direction);
+}
 
 // place_at — node and place in its cell that the part has come to after t metres.
 void place_at(ViewBlock view, Part part, float t, out ivec2 cell, out vec2 inside) {

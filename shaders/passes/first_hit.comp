@@ -17,7 +17,9 @@ Ray ray_through(ivec2 pixel) {
     vec2 place = (vec2(pixel) + view.offset.xy) * view.inverse_size.zw;
     vec3 direction =
         pixel_direction(view.forward.xyz, view.right.xyz, view.up.xyz, vec2(view.right.w, view.up.w), place);
-    return ray_from(field_of(view), view.base.xy, view.camera.xyz, direction);
+    bool from_above = (view.counts.z & TARN_FLAG_UNDER_WATER) == 0u;
+    return from_above ? air_ray(field_of(view), view.base.xy, view.camera.xyz, direction)
+                      : ray_from(field_of(view), view.base.xy, view.camera.xyz, direction);
 }
 
 void main() {

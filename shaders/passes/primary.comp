@@ -45,7 +45,7 @@ void store(ivec2 local, ivec2 pixel, Part part, float limit, float overlay_t, bo
 #ifdef TARN_WAVES
         float level = texelFetch(heights, hit.cell, 0).g * view.heights.w + view.heights.z - view.offset.w;
 #else
-        float level = part.origin.z + hit.t * part.direction.z;
+        float level = height_after(view, part, hit.t);
 #endif
         if (hit.water && bed_is_known(level))
             end.flags |= end_bed_known;

@@ -29,10 +29,10 @@ void main() {
 #ifdef TARN_WAVES
     WaveSurface met = unpack_surface(imageLoad(surfaces, local));
     Surface surface = Surface(slope_of_part(met, number, first.in_water, pixel_of(view, local), view.offset.z,
-                                            first.direction, view.optics.x),
+                                            direction_after(view, first, first_end.t), view.optics.x),
                               surface_level(heights, view, first, first_end));
 #else
-    Surface surface = calm_surface(first, first_end);
+    Surface surface = calm_surface(view, first, first_end);
 #endif
     Part part = split_part(view, first, first_end, surface, number);
     if (!wanted(view, part, number))

@@ -125,7 +125,7 @@ vec3 marked(vec3 albedo, vec2 nodes, float z, bool in_water, float level, float 
 //   path_m   length of the way from the camera, for the footprint of a pixel
 //   water_m  as much of it as lies in the water: what is left there of the bed's light, is returned
 vec3 ground_radiance(Part part, End end, float path_m, float water_m, Sunlit sunlit) {
-    float z = part.origin.z + end.t * part.direction.z;
+    float z = height_after(view, part, end.t);
     vec4 corners = textureGather(heights, (vec2(end.cell) + 1.0) * view.inverse_size.xy, 0) * view.heights.y;
     if (!part.in_water && z < bilinear(corners, end.inside) - view.options.x) {
         // The side of the block that the scene is cut out of.
@@ -270,7 +270,7 @@ struct Glitter {
 };
 
 Glitter glitter_of(Part first, End end, WaveSurface surface) {
-    vec3 to_viewer = -first.direction;
+    vec3 direction = direction_after(view, first, end.t), to_viewer = -direction;
     bool schlick = on(TARN_FLAG_SCHLICK);
     float eta = 1.0 / view.optics.x, seen = 0.0;
     Glitter g = Glitter(vec3(0.0), 0.0, vec3(0.0), 0.0);
@@ -280,7 +280,7 @@ Glitter glitter_of(Part first, End end, WaveSurface surface) {
         vec3 normal = normal_of_slope(visible_slope(visible, to_viewer, k / slopes_across, k % slopes_across, share));
         float cosine = clamp(dot(to_viewer, normal), 0.0, 1.0);
         float mirror = schlick ? fresnel_schlick(cosine, eta) : fresnel_dielectric(cosine, eta);
-        vec3 reflected = first.direction + 2.0 * cosine * normal;
+        vec3 reflected = direction + 2.0 * cosine * normal;
         reflected.z = abs(reflected.z);
         seen += share;
         g.mirror += share * mirror;
@@ -354,12 +354,12 @@ void main() {
         if (!first.in_water)
             glitter = glitter_of(first, first_end, met);
 #else
-        Surface surface = calm_surface(first, first_end);
+        Surface surface = calm_surface(view, first, first_end);
 #endif
         for (int number = 1; number < 3; ++number) {
 #ifdef TARN_WAVES
-            Surface surface = Surface(slope_of_part(met, number, first.in_water, pixel, view.offset.z, first.direction,
-                                                    view.optics.x), level);
+            Surface surface = Surface(slope_of_part(met, number, first.in_water, pixel, view.offset.z,
+                                                    direction_after(view, first, first_end.t), view.optics.x), level);
 #endif
             Part part = split_part(view, first, first_end, surface, number);
             if (!wanted(view, part, number))

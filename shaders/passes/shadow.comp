@@ -32,10 +32,10 @@ void main() {
 #ifdef TARN_WAVES
         WaveSurface met = unpack_surface(imageLoad(surfaces, local));
         Surface surface = Surface(slope_of_part(met, number, part.in_water, pixel_of(view, local), view.offset.z,
-                                            part.direction, view.optics.x),
+                                            direction_after(view, part, first_end.t), view.optics.x),
                               surface_level(heights, view, part, first_end));
 #else
-        Surface surface = calm_surface(part, first_end);
+        Surface surface = calm_surface(view, part, first_end);
 #endif
         part = split_part(view, part, first_end, surface, number);
         if (!wanted(view, part, number))
@@ -58,14 +58,14 @@ void main() {
         normal = vec3(0.0, 0.0, 1.0);
     if (sun.z <= 0.0 || dot(normal, towards) <= 0.0)
         return;
-    float height = part.origin.z + end.t * part.direction.z + view.options.x;
+    float height = height_after(view, part, end.t) + view.options.x;
     vec3 from = vec3(end.inside, height);
     bool lit = true;
     for (int leg = part.in_water ? 0 : 1; leg < 2 && lit; ++leg) {
         float t_leg = leg == 0 ? max(part.level - from.z, 0.0) / towards.z : far_m;
         Hit ignored;
-        lit = !trace_field(heights, bounds, field,
-                           ray_from(field, vec2(end.cell), from, leg == 0 ? towards : sun), t_leg, false, ignored);
+        Ray ray = leg == 0 ? ray_from(field, vec2(end.cell), from, towards) : air_ray(field, vec2(end.cell), from, sun);
+        lit = !trace_field(heights, bounds, field, ray, t_leg, false, ignored);
         from = vec3(from.xy + vec2(towards.x, -towards.y) / view.grid.z * t_leg, max(part.level, from.z));
     }
     if (!lit)

@@ -107,8 +107,8 @@ bool part_of_slot(ivec2 local, int slot, out Part part, out End end, out float b
     if ((end.flags & end_surface) == 0u)
         return false;
     WaveSurface met = unpack_surface(imageLoad(surfaces, local));
-    Surface surface = Surface(slope_of_part(met, number, from_water, pixel_of(view, local), view.offset.z, part.direction,
-                                            view.optics.x),
+    Surface surface = Surface(slope_of_part(met, number, from_water, pixel_of(view, local), view.offset.z,
+                                            direction_after(view, part, end.t), view.optics.x),
                               surface_level(heights, view, part, end));
     before_m = end.t;
     water_m = from_water ? end.t : 0.0;

@@ -33,10 +33,11 @@ void store_surface(ivec2 local, ivec2 pixel, Part part, End end) {
     vec2 at = (vec2(end.cell) + end.inside - view.base.xy) * view.grid.z;
     at.y = -at.y;
     vec4 amplitude = wave_fade(waves, level - bilinear(ground, end.inside)) * wave_amplitude(amplitudes, waves, at);
-    float footprint = wave_footprint(view.camera.w, end.t, part.direction.z), bright;
+    vec3 direction = direction_after(view, part, end.t);
+    float footprint = wave_footprint(view.camera.w, end.t, direction.z), bright;
     vec3 taken;
     vec2 mean = wave_slopes(wave_slope_layers, wave_table, waves, at, footprint, amplitude, taken);
-    vec3 to_viewer = (part.in_water ? 1.0 : -1.0) * part.direction;
+    vec3 to_viewer = (part.in_water ? 1.0 : -1.0) * direction;
     vec2 lot = draw_slope(pixel, view.offset.z, to_viewer, mean, taken, part.in_water ? 0.0 : 1.0 / view.optics.x, bright);
     imageStore(surfaces, local, pack_surface(WaveSurface(mean, lot, bright, taken)));
 }

@@ -19,7 +19,7 @@ void main() {
         return;
     vec4 origin = rays[2u * i], direction = rays[2u * i + 1u];
     Field field = field_of(view);
-    Ray ray = ray_from(field, vec2(origin.w, direction.w), origin.xyz, direction.xyz);
+    Ray ray = air_ray(field, vec2(origin.w, direction.w), origin.xyz, direction.xyz);
     Hit hit;
     vec4 answer = vec4(0.0);
     if (trace_field(heights, bounds, field, ray, t_max, with_water, hit))

@@ -76,7 +76,8 @@ struct ViewBlock {
                           // raised above its level, for waves [m]
     uvec4 counts;         // x: width, y: height [px], z: flags, w: lakes
     ivec4 tile;           // xy: first pixel, zw: size of the tile being drawn
-    vec4 base;            // xy: node by the camera, z: 1 / spacing [1/m], w: -
+    vec4 base;            // xy: node by the camera, z: 1 / spacing [1/m], w: what the Earth's curvature bends
+                          // lines of sight by [1/m], 0: not at all
     vec4 inverse_size;    // xy: 1 / nodes, zw: 1 / pixels
     // For the walks, whose unit of height is that of a texel (lib/heightfield.glsl):
     vec4 units;           // x: units a metre, yz: of water: offset and factor on the texel, w: the top

@@ -12,6 +12,7 @@
 #include "image/compare.hpp"
 #include "image/files.hpp"
 #include "reference/tracer.hpp"
+#include "scene/curvature.hpp"
 #include "scene/samples.hpp"
 #include "scene_files/scene_folder.hpp"
 
@@ -106,7 +107,7 @@ std::string mark_of(const scene::Scene& scene, const scene::View& view) {
         << scene.optics.index << ' ' << scene.look.tree_line_m << ' ' << scene.look.snow_line_m
         << ' ' << int(view.waves.model) << ' ' << view.waves.wind_m_per_s << ' '
         << view.waves.wind_from_deg << ' ' << view.waves.texels << ' ' << view.waves.cascades << ' '
-        << view.waves.seed;
+        << view.waves.seed << ' ' << scene::is_curved(scene, view);
     std::string words = all.str();
     for (const Heightfield* field : {&scene.ground, &scene.water})
         words.append(reinterpret_cast<const char*>(field->codes.values.data()),

@@ -37,6 +37,8 @@ scene_files::OptionList options_of(const render::Plan& plan) {
         out.push_back({"no-mirrored-land", "true"});
     if (!s.refraction)
         out.push_back({"no-refraction", "true"});
+    if (s.earth_curvature)
+        out.push_back({"curvature", *s.earth_curvature ? "on" : "off"});
     out.push_back({"least-transmittance", text(s.least_transmittance)});
     if (plan.view.waves.calm()) {
         out.push_back({"waves", "calm"});

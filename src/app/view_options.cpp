@@ -389,6 +389,9 @@ void add_view_options(CLI::App& c, ViewWords& w) {
         ->capture_default_str();
     c.add_flag("--no-shadows", w.no_shadows, "leave out the sun's shadows");
     c.add_flag("--no-reflection", w.no_reflection, "leave out what the water mirrors");
+    c.add_option("--curvature", w.curvature,
+                 "the Earth's: on, off, or auto: where its drop could be more than a pixel")
+        ->check(CLI::IsMember({"auto", "on", "off"}));
     c.add_flag("--no-mirrored-land", w.no_mirrored_land, "let the water mirror the sky alone");
     c.add_flag("--no-refraction", w.no_refraction, "leave out what is seen through the surface");
     c.add_flag("--no-sun-disc", w.no_sun_disc, "leave out the sun itself");
@@ -522,6 +525,8 @@ scene::View make_view(const ViewWords& w, scene::Scene& scene) {
     view.settings.shadows = !w.no_shadows;
     view.settings.reflection = !w.no_reflection;
     view.settings.mirrored_land = !w.no_mirrored_land;
+    if (w.curvature != "auto")
+        view.settings.earth_curvature = w.curvature == "on";
     view.settings.refraction = !w.no_refraction;
     view.settings.validate();
     view.waves = make_waves(w, scene);

@@ -23,6 +23,7 @@ struct ViewWords {
     bool no_thrown_back = false;
     std::optional<double> index;
     std::string fresnel = "exact", intersection = "cone-map", caustics = "splat";
+    std::string curvature = "auto";
     bool no_shadows = false, no_reflection = false, no_mirrored_land = false, no_refraction = false,
          no_sun_disc = false;
     scene::RenderSettings settings;

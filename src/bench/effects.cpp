@@ -41,6 +41,9 @@ std::vector<Variant> variants() {
         if (method.walk != scene::Walk::cone_map)
             add("first hits", method.name, false,
                 [walk = method.walk](View& v) { v.settings.walk = walk; });
+    for (const bool on : {false, true})
+        add("curvature", on ? "on" : "off", false,
+            [on](View& v) { v.settings.earth_curvature = on; });
     add("shadows", "off", false, [](View& v) { v.settings.shadows = false; });
     add("reflection", "of the sky", false, [](View& v) { v.settings.mirrored_land = false; });
     add("reflection", "off", false, [](View& v) { v.settings.reflection = false; });

@@ -151,6 +151,7 @@ std::vector<IntersectionResult> compare_methods(const scene::Scene& scene, const
                              .shadows = false,
                              .reflection = false,
                              .refraction = false,
+                             .earth_curvature = false,
                              .ground_albedo = {},
                              .contours_m = {},
                              .depth_contours_m = {},

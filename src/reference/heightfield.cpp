@@ -48,7 +48,7 @@ std::optional<double> first_below(Gap gap, double a, double b) {
 
 std::optional<Hit> trace_field(const Heightfield& ground, const Heightfield* water,
                                glm::dvec3 origin, glm::dvec3 direction, double t_max,
-                               double bottom_m) {
+                               double bottom_m, double bend) {
     const GridSize size = ground.size();
     const double s = ground.spacing_m;
     const double oc = ground.col(origin.x), orow = ground.row(origin.y);
@@ -67,8 +67,26 @@ std::optional<Hit> trace_field(const Heightfield& ground, const Heightfield* wat
         t0 = std::max(t0, std::min(a, b));
         t1 = std::min(t1, std::max(a, b));
     };
-    // The slab from the block's bottom up.
-    if (direction.z > 0.0)
+    // The slab from the block's bottom up; a curved ray rises, falls and rises again.
+    const auto height = [&](double t) { return origin.z + t * (direction.z + t * bend); };
+    if (bend > 0.0) {
+        const double lowest_at = -0.5 * direction.z / bend;
+        const auto pass = [&](double a, double b) { // heights at a and b lie on both sides
+            const bool falls = height(a) > bottom_m;
+            for (int i = 0; i < 200; ++i) {
+                const double m = 0.5 * (a + b);
+                ((height(m) > bottom_m) == falls ? a : b) = m;
+            }
+            return b;
+        };
+        if (origin.z < bottom_m) {
+            double high = std::max(lowest_at, 1.0);
+            while (height(high) < bottom_m)
+                high *= 2.0;
+            t0 = std::max(t0, pass(std::max(lowest_at, 0.0), high));
+        } else if (lowest_at > 0.0 && height(lowest_at) < bottom_m)
+            t1 = std::min(t1, pass(0.0, lowest_at));
+    } else if (direction.z > 0.0)
         t0 = std::max(t0, (bottom_m - origin.z) / direction.z);
     else if (direction.z < 0.0)
         t1 = std::min(t1, (bottom_m - origin.z) / direction.z);
@@ -92,7 +110,9 @@ std::optional<Hit> trace_field(const Heightfield& ground, const Heightfield* wat
         const double t_c = dc == 0.0 ? infinity : ((dc > 0.0 ? c + 1 : c) - oc) / dc;
         const double t_r = dr == 0.0 ? infinity : ((dr > 0.0 ? r + 1 : r) - orow) / dr;
         const double out = std::max(t, std::min({t_c, t_r, t1}));
-        const double lowest = origin.z + direction.z * (direction.z < 0.0 ? out : t);
+        // Nowhere below its tangent.
+        const double climb = direction.z + 2.0 * bend * t;
+        const double lowest = height(t) + std::min(climb, 0.0) * (out - t);
         const auto corners = [&](const Heightfield& field) {
             return Patch{field.elevation_m(Node{c, r}), field.elevation_m(Node{c + 1, r}),
                          field.elevation_m(Node{c, r + 1}), field.elevation_m(Node{c + 1, r + 1})};
@@ -100,9 +120,8 @@ std::optional<Hit> trace_field(const Heightfield& ground, const Heightfield* wat
         const auto meet = [&](const Patch& patch) {
             return first_below(
                 [&](double at) {
-                    return origin.z + at * direction.z -
-                           patch.at(std::clamp(oc + at * dc - c, 0.0, 1.0),
-                                    std::clamp(orow + at * dr - r, 0.0, 1.0));
+                    return height(at) - patch.at(std::clamp(oc + at * dc - c, 0.0, 1.0),
+                                                 std::clamp(orow + at * dr - r, 0.0, 1.0));
                 },
                 t, out);
         };
@@ -127,7 +146,7 @@ std::optional<Hit> trace_field(const Heightfield& ground, const Heightfield* wat
         }
         if (best)
             return Hit{*best, is_water, oc + *best * dc, orow + *best * dr,
-                       origin + *best * direction};
+                       origin + *best * direction + glm::dvec3(0, 0, *best * *best * bend)};
         if (out >= t1)
             return {};
         t = out;

@@ -23,8 +23,9 @@ struct Hit {
 /// @param direction  unit, scene axes
 /// @param water      null to look at the ground only
 /// @param bottom_m   of the block of earth below the ground: there is nothing under it
+/// @param bend       rise of a curved ray over its direction by the square of path length [1/m]
 std::optional<Hit> trace_field(const Heightfield& ground, const Heightfield* water,
                                glm::dvec3 origin, glm::dvec3 direction, double t_max,
-                               double bottom_m = -1e9);
+                               double bottom_m = -1e9, double bend = 0.0);
 
 } // namespace tarn::reference

@@ -13,6 +13,7 @@
 #include "reference/sunlight.hpp"
 #include "reference/surface.hpp"
 #include "reference/waves.hpp"
+#include "scene/curvature.hpp"
 
 #include <cmath>
 #include <limits>
@@ -60,7 +61,8 @@ public:
           index_(scene.optics.index), medium_(scene.optics, view.settings.spectral),
           longest_path_m_(scene::greatest_path_m(scene.optics, view.settings)),
           lift_m_(scene::shadow_lift_m(scene.ground)),
-          bottom_m_(scene::block_bottom_m(scene.ground)) {
+          bottom_m_(scene::block_bottom_m(scene.ground)),
+          bend_per_m_(scene::is_curved(scene, view) ? scene::bend_per_m : 0.0) {
         half_tangent_.y = std::tan(camera_.fov_deg * pi / 360.0);
         half_tangent_.x = half_tangent_.y * settings_.width_px / settings_.height_px;
         pixel_rad_ = 2.0 * half_tangent_.y / settings_.height_px;
@@ -142,6 +144,15 @@ private:
         return sum / draws;
     }
 
+    /// How a ray in the air rises over its direction, heights counted from level ground [1/m].
+    double bend_of(glm::dvec3 direction) const {
+        return bend_per_m_ * (direction.x * direction.x + direction.y * direction.y);
+    }
+
+    static glm::dvec3 along(glm::dvec3 origin, glm::dvec3 direction, double bend, double t) {
+        return origin + t * direction + glm::dvec3(0, 0, bend * t * t);
+    }
+
     Split split(glm::dvec3 direction, const Meeting& at, bool from_water, Lot lot) const {
         glm::dvec2 slope = at.slope;
         if (waves_ && sea_.roughness.trace() > 0.0) {
@@ -193,7 +204,8 @@ private:
     std::optional<Meeting> through_slab(glm::dvec3 origin, glm::dvec3 direction, double& t,
                                         double t_end, bool from_air) const {
         const double bound = waves_->bound_m(), side = from_air ? 1.0 : -1.0;
-        const auto at = [&](double s) { return origin + s * direction; };
+        const double bend = from_air ? bend_of(direction) : 0.0;
+        const auto at = [&](double s) { return along(origin, direction, bend, s); };
         // > 0 while the ray is in the medium that it came from.
         const auto over_water = [&](double s, std::optional<double>& level) {
             const glm::dvec3 p = at(s);
@@ -211,13 +223,16 @@ private:
         // Neither the waves nor their fading by the shore can close a gap faster than this; the
         // shortest step is a twentieth of a texel.
         const double shortest = waves_->step_m() / pace;
-        const double closing =
-            std::abs(direction.z) + pace * (waves_->steepest() + 2.0 * bound / sea_.full_depth_m);
+        const auto climb = [&](double s) { return direction.z + 2.0 * bend * s; };
+        const double waves_close = pace * (waves_->steepest() + 2.0 * bound / sea_.full_depth_m);
         std::optional<double> level, next_level;
         double water = over_water(t, level);
         if (water <= 0.0)
             return finish(at(t), t, *level);
         while (t < t_end) {
+            // The ray climbs a little more by the end of a step.
+            const double closing =
+                std::abs(climb(t)) + 2.0 * bend * scene_.ground.spacing_m / pace + waves_close;
             const double step = std::max(
                 shortest, std::min(water / closing, 0.25 * scene_.ground.spacing_m / pace));
             const double next = std::min(t + step, t_end);
@@ -245,7 +260,7 @@ private:
             t = next;
             water = next_water;
             level = next_level;
-            if (side * direction.z > 0.0 && (!level || side * (at(t).z - *level) > bound))
+            if (side * climb(t) > 0.0 && (!level || side * (at(t).z - *level) > bound))
                 return {};
             const double col = scene_.ground.col(at(t).x), row = scene_.ground.row(at(t).y);
             if (col < 0.0 || row < 0.0 || col > scene_.ground.size().cols - 1 ||
@@ -268,17 +283,19 @@ private:
     /// The first of ground and water in the air.
     std::optional<Meeting> meet_in_air(glm::dvec3 origin, glm::dvec3 direction,
                                        bool with_water) const {
+        const double bend = bend_of(direction);
         if (!with_water || !waves_) {
             const auto hit = trace_field(scene_.ground, with_water ? &scene_.water : nullptr,
-                                         origin, direction, infinity, bottom_m_);
+                                         origin, direction, infinity, bottom_m_, bend);
             if (!hit)
                 return {};
             return Meeting{*hit, hit->point.z, {0.0, 0.0}};
         }
         double t = 0.0;
         while (true) {
-            const auto hit = trace_field(scene_.ground, &raised_, origin + t * direction, direction,
-                                         infinity, bottom_m_);
+            const auto hit = trace_field(scene_.ground, &raised_, along(origin, direction, bend, t),
+                                         direction + glm::dvec3(0, 0, 2.0 * bend * t), infinity,
+                                         bottom_m_, bend);
             if (!hit)
                 return {};
             if (!hit->water)
@@ -315,7 +332,9 @@ private:
     }
 
     bool blocked(glm::dvec3 from, glm::dvec3 towards, double reach) const {
-        return trace_field(scene_.ground, nullptr, from, towards, reach, bottom_m_).has_value();
+        return trace_field(scene_.ground, nullptr, from, towards, reach, bottom_m_,
+                           std::isinf(reach) ? bend_of(towards) : 0.0)
+            .has_value();
     }
 
     glm::dvec3 normal_at(const Hit& hit, double& slope) const {
@@ -463,7 +482,9 @@ private:
             return through_air(origin, direction, hit.t,
                                land(hit, direction, pixel_rad_ * (before_m + hit.t)));
         const Lake lake{met->level_m, scene_.lake_at_level(met->level_m).bed != Bed::unknown};
-        const Split at = split(direction, *met, false, *lot);
+        const Split at =
+            split(glm::normalize(direction + glm::dvec3(0, 0, 2.0 * hit.t * bend_of(direction))),
+                  *met, false, *lot);
         glm::dvec3 out(0.0);
         if (settings_.reflection && settings_.mirrored_land)
             out += at.mirror * in_air(hit.point, at.reflected, before_m + hit.t, nullptr, {});
@@ -599,7 +620,7 @@ private:
     const scene::Camera& camera_;
     double index_;
     Medium medium_;
-    double longest_path_m_, lift_m_, bottom_m_;
+    double longest_path_m_, lift_m_, bottom_m_, bend_per_m_;
     glm::dvec2 half_tangent_{0.0};
     double pixel_rad_ = 0.0;
     glm::dvec3 sun_below_{0, 0, 1}, sun_irradiance_below_{0.0};

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
+#include "scene/curvature.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -134,6 +135,20 @@ private:
         const bool wavy = !everything_.waves.calm();
         const glm::dvec3 sun = everything_.lighting.sun_direction;
         using scene::View;
+        const scene::CurvatureDrop drop =
+            scene::curvature_drop(scene_, everything_.camera, s.height_px);
+        const std::string falls = text("level ground falls ", fixed(drop.drop_m, 1), " m in ",
+                                       fixed(1e-3 * drop.distance_m, 1), " km: ");
+        if (!scene::is_curved(scene_, everything_))
+            proved_.push_back(
+                {"curvature", "off", text(falls, fixed(drop.pixels, 2), " pixels at most"), true});
+        else if (!s.earth_curvature) // else it was asked for
+            add("curvature", {{"off", falls + "as little of it is seen",
+                               [](View& v) { v.settings.earth_curvature = false; }}});
+        if (s.spectral)
+            proved_.push_back({"colour", "three channels",
+                               "a frame looks colours up in one table either way: no time is saved",
+                               false});
         if (s.shadows && sun.z > 0.0) {
             const double rise = sun.z / std::max(std::hypot(sun.x, sun.y), 1e-9);
             const bool none = steepest_slope(scene_.ground) < rise;
@@ -382,6 +397,7 @@ private:
         plan.predicted_ms = drawn.ms;
         plan.kept = (!budget.max_error || plan.predicted_error <= *budget.max_error) &&
                     (!budget.frame_time_ms || plan.predicted_ms <= *budget.frame_time_ms);
+        plan.decisions = proved_;
         for (std::size_t k = 0; k < parts_.size(); ++k)
             for (std::size_t j = 0; j < parts_[k].levels.size(); ++j) {
                 const Level& l = parts_[k].levels[j];
@@ -406,6 +422,7 @@ private:
     std::map<std::string, double> waves_ms_; ///< see waves_ms()
     Trial best_;
     std::vector<Part> parts_;
+    std::vector<Decision> proved_; ///< that need no trial
 };
 
 } // namespace

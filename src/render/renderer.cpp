@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
+#include "scene/curvature.hpp"
 #include "scene/land_shadow.hpp"
 #include "scene/water_colour.hpp"
 
@@ -193,26 +194,31 @@ std::string Renderer::air_defines() const {
     return std::string(hazy_ ? "#define TARN_HAZE 1\n" : "") +
            (whole_sky_ ? "#define TARN_WHOLE_SKY 1\n" : "") +
            (shadowed_ ? "#define TARN_LAND_SHADOW 1\n" : "") +
-           (mapped_ ? "#define TARN_MAP 1\n" : "");
+           (mapped_ ? "#define TARN_MAP 1\n" : "") + curved_define();
 }
+
+// The walks of scenes that are small hold none of it.
+std::string Renderer::curved_define() const { return curved_ ? "#define TARN_CURVED 1\n" : ""; }
 
 void Renderer::use_walk(scene::Walk walk, double setting) {
     walk_ = walk;
     const scene::WalkMethod& method = scene::walk_method(walk_);
     block_.bounds.z = float(setting > 0.0 ? setting : method.default_setting);
-    if (passes_.count(walk_))
+    if (passes_.count({walk_, curved_}))
         return;
     const std::string file = walk_file();
     const auto root = gpu::shader_root();
     // See lib/walks/cone_map.glsl.
-    const std::string defined = rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "";
+    const std::string defined =
+        (rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "") + curved_define();
     const auto pass = [&](const char* name) {
         return gpu::ComputeProgram(gpu::load_shader(
             root, text("passes/", name, ".comp"),
             {{"lib/walks/cone_map.glsl", "lib/walks/" + file + ".glsl"}}, defined));
     };
-    passes_.emplace(walk_, WalkPasses{pass("beams"), pass("primary"), pass("secondary"),
-                                      pass("shadow"), pass("first_hit"), pass("trace_rays")});
+    passes_.emplace(std::pair(walk_, curved_),
+                    WalkPasses{pass("beams"), pass("primary"), pass("secondary"), pass("shadow"),
+                               pass("first_hit"), pass("trace_rays")});
 }
 
 std::string Renderer::walk_file() const {
@@ -411,6 +417,8 @@ void Renderer::prepare(const scene::View& view) {
                     "check its position");
     block_.base.x = float(std::floor(col));
     block_.base.y = float(std::floor(row));
+    curved_ = scene::is_curved(scene_, view);
+    block_.base.w = curved_ ? float(scene::bend_per_m) : 0.0f;
     prepare_waves(view);
     block_.camera = {float(col - double(block_.base.x)), float(row - double(block_.base.y)),
                      float(p.z - ground.offset_m), float(pixel_rad)};
@@ -576,7 +584,8 @@ void Renderer::locate_camera() {
         block_.options.z = scene_.lake_at_level(*water).bed != Bed::unknown ? 1.0f : 0.0f;
     }
     // Rays that rise can enter a slab from its side, and leave it, from anywhere below its top.
-    in_slab_ = wavy() && (under ? between : p.z <= water_top_m_ + lift_m_);
+    // On a curved Earth those that skim the horizon rise again.
+    in_slab_ = wavy() && (under ? between : curved_ || p.z <= water_top_m_ + lift_m_);
 }
 
 void Renderer::set_sample(int sample, int samples) {
@@ -591,7 +600,7 @@ void Renderer::draw_tile() {
     constexpr GLbitfield images = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
     const bool split = (block_.counts.z & (TARN_FLAG_REFLECTION | TARN_FLAG_REFRACTION)) != 0;
     glMemoryBarrier(images);
-    const WalkPasses& calm = passes_.at(walk_);
+    const WalkPasses& calm = walk_passes();
     const WavyPasses* wavy_ones = wavy() ? &wavy_passes() : nullptr;
     bind_walk(!under_water()); // only from above is water met
     const auto begins = [&](const char* name) {
@@ -637,7 +646,7 @@ void Renderer::find_beams() {
     if (on_pass)
         on_pass("beams");
     bind_walk(!under_water());
-    passes_.at(walk_).beams.use();
+    walk_passes().beams.use();
     glDispatchCompute(GLuint((beams_.width_px() + 7) / 8), GLuint((beams_.height_px() + 3) / 4), 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
@@ -645,7 +654,7 @@ void Renderer::find_beams() {
 void Renderer::find_first_hits() {
     view_buffer_.write(&block_, sizeof block_);
     find_beams();
-    const WalkPasses& pass = passes_.at(walk_);
+    const WalkPasses& pass = walk_passes();
     pass.first_hit.use();
     glDispatchCompute(groups(int(block_.counts.x)), groups(int(block_.counts.y)), 1);
 }
@@ -668,7 +677,7 @@ std::vector<FieldHit> Renderer::trace_rays(std::span<const FieldRay> rays, scene
         const gpu::Buffer out(count * sizeof(FieldHit), nullptr);
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_RAYS, in.id());
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_ANSWERS, out.id());
-        passes_.at(walk).trace_rays.use();
+        walk_passes().trace_rays.use();
         glUniform1i(0, with_water);
         glUniform1f(1, float(t_max));
         const GLuint groups_of_64 = GLuint((count + 63) / 64);

@@ -76,6 +76,7 @@ struct RenderSettings {
     int shaft_steps = 2; ///< places along a view in the water where each of sixteen pixels side by
                          ///< side looks for shafts of light, [0, 256]; 0: none
     double least_transmittance = 0.002;  ///< underwater paths end where less is left, [1e-6, .5]
+    std::optional<bool> earth_curvature; ///< nothing: where it shows (scene/curvature.hpp)
     std::optional<double> ground_albedo; ///< lab: one grey for all ground, [0, 1]
     // What maps draw; nothing costs nothing. The reference leaves it out.
     std::optional<double> contours_m;       ///< interval on land, heights of the datum, [.01, 1e4]

@@ -2,6 +2,7 @@
 
 #include "core/text.hpp"
 #include "geo/frame.hpp"
+#include "scene/curvature.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +16,8 @@ namespace {
 
 /// Where a place of the scene is on the screen, if it is before the camera.
 std::optional<ImVec2> on_screen(const scene::Camera& c, const glm::dvec3& place, ImVec2 size) {
-    const glm::dvec3 to = place - c.position;
+    glm::dvec3 to = place - c.position;
+    to.z -= scene::bend_per_m * (to.x * to.x + to.y * to.y); // nothing, but far away
     const double depth = glm::dot(to, c.forward);
     if (depth <= 1e-3)
         return std::nullopt;

@@ -14,12 +14,15 @@ constexpr double degree = 3.14159265358979323846 / 180.0;
 }
 
 std::optional<glm::dvec3> first_ground(const scene::Scene& scene, const glm::dvec3& origin,
-                                       const glm::dvec3& direction, double most_m) {
+                                       const glm::dvec3& direction, double most_m,
+                                       double bend_per_m) {
     const Heightfield& g = scene.ground;
     const glm::dvec3 d = glm::normalize(direction);
     const double step = 0.5 * g.spacing_m;
+    const double bend = bend_per_m * (d.x * d.x + d.y * d.y);
+    const auto at = [&](double t) { return origin + d * t + glm::dvec3(0, 0, bend * t * t); };
     const auto above = [&](double t) {
-        const glm::dvec3 p = origin + d * t;
+        const glm::dvec3 p = at(t);
         return p.z - g.elevation_m(p.x, p.y);
     };
     double before = 0.0;
@@ -33,7 +36,7 @@ std::optional<glm::dvec3> first_ground(const scene::Scene& scene, const glm::dve
                 const double middle = 0.5 * (low + high);
                 (above(middle) < 0.0 ? high : low) = middle;
             }
-            return origin + d * high;
+            return at(high);
         }
         before = here;
     }
@@ -41,10 +44,11 @@ std::optional<glm::dvec3> first_ground(const scene::Scene& scene, const glm::dve
 }
 
 std::optional<glm::dvec3> first_met(const scene::Scene& scene, const glm::dvec3& eye,
-                                    const glm::dvec3& direction) {
+                                    const glm::dvec3& direction, double bend_per_m) {
     const Heightfield& g = scene.ground;
     const glm::dvec3 d = glm::normalize(direction);
-    // Where the ray is over the field and not above all of it.
+    const double bend = bend_per_m * (d.x * d.x + d.y * d.y);
+    // Where the ray is over the field and, as far as straight lines tell, not above all of it.
     double from = 0.0, to = 1e9;
     const glm::dvec3 low(g.west_m, g.south_m(), g.lower_bound_m() - 1.0),
         high(g.east_m(), g.north_m, g.upper_bound_m() + 1.0);
@@ -56,15 +60,24 @@ std::optional<glm::dvec3> first_met(const scene::Scene& scene, const glm::dvec3&
         }
         const double a = (low[k] - eye[k]) / d[k], b = (high[k] - eye[k]) / d[k];
         from = std::max(from, std::min(a, b));
-        to = std::min(to, std::max(a, b));
+        if (k < 2 || d.z > 0.0) // it falls less far than a straight one
+            to = std::min(to, std::max(a, b));
     }
     if (from >= to)
         return std::nullopt;
-    std::optional<glm::dvec3> met = first_ground(scene, eye + d * from, d, to - from);
+    std::optional<glm::dvec3> met =
+        first_ground(scene, eye + d * from + glm::dvec3(0, 0, bend * from * from),
+                     d + glm::dvec3(0, 0, 2.0 * bend * from), to - from, bend_per_m);
     double nearest = met ? glm::length(*met - eye) : 1e9;
     for (const LakeRecord& lake : scene.lakes) {
-        const double t = d.z == 0.0 ? -1.0 : (lake.level_m - eye.z) / d.z;
-        const glm::dvec3 p = eye + d * t;
+        // bend t^2 + d.z t + above = 0, the first t > 0, in a form that holds for bend -> 0.
+        const double above = eye.z - lake.level_m, root2 = d.z * d.z - 4.0 * bend * above;
+        if (root2 < 0.0)
+            continue;
+        const double root = std::sqrt(root2);
+        const double t = above > 0.0 ? (d.z < 0.0 ? 2.0 * above / (root - d.z) : -1.0)
+                                     : (d.z > 0.0 ? -2.0 * above / (root + d.z) : -1.0);
+        const glm::dvec3 p = eye + d * t + glm::dvec3(0, 0, bend * t * t);
         const auto water = t > 0.0 && t < nearest ? scene.water_level_m(p.x, p.y) : std::nullopt;
         if (water && std::abs(*water - lake.level_m) < 0.01) {
             met = p;
@@ -75,13 +88,14 @@ std::optional<glm::dvec3> first_met(const scene::Scene& scene, const glm::dvec3&
 }
 
 std::optional<Reading> read_place(const scene::Scene& scene, const glm::dvec3& eye,
-                                  const glm::dvec3& direction, double distance) {
+                                  const glm::dvec3& direction, double distance, double bend_per_m) {
     if (!(distance > 0.0 && distance < 0.99e9))
         return std::nullopt;
     const glm::dvec3 d = glm::normalize(direction);
     Reading out;
     out.distance_m = distance;
     out.point = eye + d * out.distance_m;
+    out.point.z += bend_per_m * (d.x * d.x + d.y * d.y) * distance * distance;
     const Heightfield& g = scene.ground;
     const double x = out.point.x, y = out.point.y;
     out.place = geo::to_geo(scene.frame, {x, y});

@@ -28,18 +28,22 @@ struct Reading {
 /// @param eye        the camera's place
 /// @param direction  of the line of sight, any length
 /// @param distance   to what it meets first, surface or ground, as pictures give it; 1e9: nothing
+/// @param bend_per_m  of lines of sight, as the picture has it (scene/curvature.hpp)
 /// @return           nothing if it meets neither
 std::optional<Reading> read_place(const scene::Scene& scene, const glm::dvec3& eye,
-                                  const glm::dvec3& direction, double distance);
+                                  const glm::dvec3& direction, double distance,
+                                  double bend_per_m = 0.0);
 
 /// Where a ray from within the field meets the ground, if it does before `most_m`: steps of half a
 /// node, then halving. For readings, not for pictures.
+/// @param bend_per_m  as above
 std::optional<glm::dvec3> first_ground(const scene::Scene& scene, const glm::dvec3& origin,
-                                       const glm::dvec3& direction, double most_m);
+                                       const glm::dvec3& direction, double most_m,
+                                       double bend_per_m = 0.0);
 
 /// The same from anywhere, water stopping it, too.
 std::optional<glm::dvec3> first_met(const scene::Scene& scene, const glm::dvec3& eye,
-                                    const glm::dvec3& direction);
+                                    const glm::dvec3& direction, double bend_per_m = 0.0);
 
 /// In one line: "-38.05123, 176.58231   ground 271.32 m   depth 41.99 m   slope 3.2 deg ...".
 std::string describe(const Reading& reading);

@@ -1,4 +1,5 @@
 #include "view/window.hpp"
+#include "scene/curvature.hpp"
 
 #include "core/error.hpp"
 #include "core/text.hpp"
@@ -94,6 +95,8 @@ private:
     void dropped(int count, const char** paths);
     scene::View view_now();
     std::optional<glm::dvec3> point_at(double x, double y) const;
+    /// Of the picture's lines of sight (scene/curvature.hpp).
+    double bend_per_m(int height_px) const;
 
     GlfwWindow window_;
     struct KeyPress {
@@ -142,10 +145,21 @@ std::optional<glm::dvec3> App::point_at(double x, double y) const {
         scene::pixel_direction(camera_of(session_.flight.pose()), x * w, y * h, w, h));
     const float distance = screen_.distance_at(x, y);
     if (std::isnan(distance)) // not drawn yet: without the GPU
-        return first_met(session_.scene, eye, d);
+        return first_met(session_.scene, eye, d, bend_per_m(h));
     if (!(distance > 0.0f && distance < 0.99e9f))
         return std::nullopt;
-    return eye + d * double(distance);
+    const double bend = bend_per_m(h) * (d.x * d.x + d.y * d.y);
+    return eye + d * double(distance) + glm::dvec3(0, 0, bend * distance * distance);
+}
+
+double App::bend_per_m(int height_px) const {
+    scene::View view = session_.view;
+    view.camera = camera_of(session_.flight.pose());
+    view.settings.height_px = std::max(height_px, 1);
+    const glm::dvec3& eye = view.camera.position;
+    const auto over = session_.scene.water_level_m(eye.x, eye.y);
+    return scene::is_curved(session_.scene, view) && !(over && eye.z < *over) ? scene::bend_per_m
+                                                                              : 0.0;
 }
 
 void App::keys(double seconds) {
@@ -291,7 +305,7 @@ void App::read_pointer() {
     state_.pointer = read_place(session_.scene, session_.flight.pose().position,
                                 scene::pixel_direction(camera_of(session_.flight.pose()),
                                                        pointer_x_ * w, pointer_y_ * h, w, h),
-                                double(distance));
+                                double(distance), bend_per_m(h));
     if (const auto& r = state_.pointer; r && r->seen_depth_m)
         log_.write(now_s() - started_s_, "depth read",
                    {{"depth_m", *r->depth_m},

@@ -1,4 +1,5 @@
 #include "geo/frame.hpp"
+#include "scene/curvature.hpp"
 #include "scene/samples.hpp"
 #include "view/probe.hpp"
 
@@ -85,6 +86,28 @@ TEST(Probe, MeasuresOnTheEllipsoid) {
     EXPECT_NEAR(view::length_m(tank, square), 300.0, 1e-4);
     EXPECT_NEAR(view::area_m2(tank, square), 10'000.0, 0.1);
     EXPECT_EQ(view::area_m2(tank, {{0, 0, 0}, {1, 0, 0}}), 0.0);
+}
+
+// Two metres over a lake 60 km wide the horizon lies 2.5 arc minutes down: a line of sight one
+// minute down meets water on a flat map only.
+TEST(Probe, FarWaterIsBehindTheHorizon) {
+    scene::Scene lake = scene::tank();
+    for (Heightfield* h : {&lake.ground, &lake.water}) {
+        h->spacing_m = 300.0;
+        h->west_m = -30000.0;
+        h->north_m = 30000.0;
+    }
+    const double minute = M_PI / 180.0 / 60.0;
+    EXPECT_FALSE(view::first_met(lake, {-28000, 40, 2}, {1, 0, -minute}, scene::bend_per_m));
+    const auto near =
+        view::first_met(lake, {-28000, 40, 2}, {1, 0, -4 * minute}, scene::bend_per_m);
+    ASSERT_TRUE(near);
+    EXPECT_NEAR(near->z, 0.0, 1e-6);
+    // (s - sqrt(s^2 - 4 b h)) / 2 b
+    EXPECT_NEAR(near->x,
+                -28000 + (4 * minute - std::sqrt(16 * minute * minute - 8 * 6.8277e-8)) /
+                             (2 * 6.8277e-8),
+                2.0);
 }
 
 TEST(Probe, FirstGroundIsTheBilinearOne) {

@@ -80,7 +80,8 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
     vec2 per_cell = 1.0 / (side * vec2(textureSize(bounds, 0)));
     float aside = 3e-7 * (pace * span.t_end + abs(whole.x) + abs(whole.y)) + side / 64.0;
     vec2 at = whole * per_cell, step_at = span.d * per_cell;
-    float above = span.oz - span.slack;
+    Span low = span; // as low as rounding may have it
+    low.oz -= span.slack;
     float inverse_pace = 1.0 / pace, inverse_sink = 1.0 / max(-span.dz, 1e-12);
     vec2 cell = cell_at(span, t);
     int steps = int(2.0 / least_step * (field.cells.x + field.cells.y)) + 8;
@@ -97,8 +98,11 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
 #endif
             cone = textureLod(bounds, at + t * step_at, 0.0).rg;
             float slope = cone_slope(cone.y, steepest);
-            float gap = above + t * span.dz - unit * cone.x;
-            float by_cone = (gap - aside * slope) / max(slope * pace - span.dz, 1e-12);
+            float gap = height_at(low, t) - unit * cone.x, climb = climb_at(span, t);
+#ifdef TARN_CURVED
+            inverse_sink = 1.0 / max(-climb, 1e-12);
+#endif
+            float by_cone = (gap - aside * slope) / max(slope * pace - climb, 1e-12);
             float by_plain = min(gap * inverse_sink, (cone_free(cone.y) - aside) * inverse_pace);
             float stride = max(by_cone, by_plain);
 #ifdef TARN_CONES_A_LOOK

@@ -19,8 +19,8 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
     vec2 at = (span.o + ray.base) * per_cell, step_at = span.d * per_cell;
     for (float i = 0.0; i < field.setting; ++i) {
         vec2 cone = textureLod(bounds, at + t * step_at, 0.0).rg;
-        float gap = span.oz + t * span.dz - cone.x * unit;
-        float closing = max(cone.y * cone.y * steepest * pace - span.dz, 1e-12);
+        float gap = height_at(span, t) - cone.x * unit;
+        float closing = max(cone.y * cone.y * steepest * pace - climb_at(span, t), 1e-12);
         if (gap * pace < 0.25 * closing)
             break;
         t += gap / closing;

@@ -24,7 +24,7 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
         vec2 t_border = (vec2(((block + ahead) << (2 * level)) - base) - span.o) * span.inverse;
         float t_out = max(t, min(min(t_border.x, t_border.y), span.t_end));
         if (level > 0) {
-            float lowest = span.oz + (span.dz < 0.0 ? t_out : t) * span.dz;
+            float lowest = lowest_between(span, t, t_out);
             vec2 highest = texelFetch(bounds, block, 2 * (level - 1)).rg * per_m;
             float top = with_water ? max(highest.r, highest.g) : highest.r;
             if (lowest <= top + span.slack) {

@@ -49,21 +49,22 @@ int meet_waves(sampler2D heights, sampler2DArray wave_heights, sampler2D amplitu
         return met_nothing;
     float to_m = 1.0 / field.per_m, spacing = 1.0 / field.per_spacing, lift = waves.counts.w;
     vec2 cell = cell_at(span, span.t);
-    float t = span.t, sink = ray.direction.z;
+    float t = span.t;
     float pace = length(span.d) * spacing; // metres along the ground a metre of path
     int dry = 0;
     for (int steps = int(field.cells.x + field.cells.y) + 8; steps >= 0; --steps) {
         vec2 t_border = borders(span, cell);
-        float t_out = max(t, min(min(t_border.x, t_border.y), span.t_end));
+        float t_out = max(t, min(min(t_border.x, t_border.y), span.t_end)), sink = climb_of(ray, t);
         vec2 middle = (cell + ray.base + 1.0) * field.texel;
         vec4 ground = textureGather(heights, middle, 0), water = textureGather(heights, middle, 1);
         bool wet = min(min(water.x, water.y), min(water.z, water.w)) > 0.0;
         water = water * field.water.y + (field.water.x - lift * field.per_m);
         vec2 corner = span.o - cell;
         vec2 p_in = clamp(corner + t * span.d, 0.0, 1.0), p_out = clamp(corner + t_out * span.d, 0.0, 1.0);
-        float bend = -(p_out.x - p_in.x) * (p_out.y - p_in.y), z_in = span.oz + t * span.dz, z_out = span.oz + t_out * span.dz;
-        Gap over_ground = Gap(z_in - bilinear(ground, p_in), z_out - bilinear(ground, p_out), bend * twist(ground));
-        Gap over_level = Gap(z_in - bilinear(water, p_in), z_out - bilinear(water, p_out), bend * twist(water));
+        float bend = -(p_out.x - p_in.x) * (p_out.y - p_in.y), z_in = height_at(span, t), z_out = height_at(span, t_out);
+        float sag = sag_between(span, t, t_out);
+        Gap over_ground = Gap(z_in - bilinear(ground, p_in), z_out - bilinear(ground, p_out), bend * twist(ground) + sag);
+        Gap over_level = Gap(z_in - bilinear(water, p_in), z_out - bilinear(water, p_out), bend * twist(water) + sag);
         over_level = Gap(over_level.above * to_m, over_level.below * to_m, over_level.curve * to_m);
         float s_ground = first_crossing(over_ground), s_stop = min(s_ground, 1.0);
         if (wet) {

@@ -4,7 +4,8 @@
 // Exact    A radius is used only by a ray above the cell's highest node, as it is defined, and above all
 //          water; the crossing that it promises is bracketed by halving down to a few cells, and found by
 //          their patches. Everywhere else the cell itself is solved and left through its border.
-// Fails    at float32's limits only. Slow: most cells of rough ground have no radius at all.
+// Fails    at float32's limits; and radii are of straight rays: over their some hundred cells the Earth's curvature bends
+//          a ray by centimetres, by which it may touch what it is taken to pass. Slow: most cells of rough ground have no radius at all.
 // Bounds   R8, a texel a cell.
 #include "lib/heightfield.glsl"
 
@@ -28,7 +29,7 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
             float highest = max(max(h.x, h.y), max(h.z, h.w)) + span.slack;
             vec2 t_border = (cell + mix(vec2(1.0 - radius), vec2(radius), span.ahead) - span.o) * span.inverse;
             float t_out = max(t, min(min(t_border.x, t_border.y), span.t_end));
-            float z = span.oz + t * span.dz, z_out = span.oz + t_out * span.dz;
+            float z = height_at(span, t), z_out = height_at(span, t_out);
             if (z > highest && (!with_water || min(z, z_out) > field.water_top + span.slack)) {
                 if (z_out > ground_below(heights, field, ray, span, t_out) + span.slack) {
                     if (t_out >= span.t_end)
@@ -41,7 +42,7 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
                 float above = t, below = t_out;
                 for (int k = 0; k < 24 && (below - above) * max(abs(span.d.x), abs(span.d.y)) > 1.0; ++k) {
                     float middle = 0.5 * (above + below);
-                    if (span.oz + middle * span.dz > ground_below(heights, field, ray, span, middle) + span.slack)
+                    if (height_at(span, middle) > ground_below(heights, field, ray, span, middle) + span.slack)
                         above = middle;
                     else
                         below = middle;

@@ -14,7 +14,7 @@ float depth_below(sampler2D smooth_heights, Field field, Ray ray, Span span, flo
     vec2 height = textureLod(smooth_heights, place, 0.0).rg;
     float water = field.water.x + field.water.y * height.g;
     at_water = with_water && height.g > 0.0 && water > height.r;
-    return (at_water ? water : height.r) - (span.oz + t * span.dz);
+    return (at_water ? water : height.r) - height_at(span, t);
 }
 
 // bisect — the crossing between t_above and t_below, halved so many times.
@@ -36,7 +36,9 @@ float bisect(sampler2D smooth_heights, Field field, Ray ray, Span span, float t_
 bool sampled_span(Field field, Ray ray, float t_max, out Span span) {
     if (!clip_ray(field, ray, t_max, span))
         return false;
+#ifndef TARN_CURVED
     if (span.dz < 0.0)
         span.t_end = min(span.t_end, (field.lowest - span.oz) / span.dz);
+#endif
     return span.t < span.t_end;
 }
