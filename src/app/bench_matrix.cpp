@@ -5,6 +5,7 @@
 #include "app/picture.hpp"
 #include "app/plot.hpp"
 #include "bench/matrix.hpp"
+#include "bench/seed_table.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
 #include "gpu/context.hpp"
@@ -20,6 +21,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <iostream>
 #include <map>
@@ -223,6 +225,114 @@ std::string file_word(std::string words) {
 
 } // namespace
 
+namespace {
+
+/// Curves of the time of best and default pictures, median over views, against what `x_of` says of
+/// a result; those with one point alone are left out.
+/// @param curve_of  what a curve holds besides
+CostPlot costs_of(const json& all, const std::function<double(const json&)>& x_of,
+                  const std::function<std::string(const json&)>& curve_of) {
+    std::map<std::string, std::map<double, std::vector<double>>> found;
+    std::vector<std::string> order;
+    for (const json& r : all.at("results")) {
+        const std::string variant = variant_of(r);
+        if (word(r, "method") != "all" || (variant != "best" && variant != "default"))
+            continue;
+        const std::string name = curve_of(r) + ", " + variant;
+        if (!found.count(name))
+            order.push_back(name);
+        found[name][x_of(r)].push_back(number(r, "time_ms"));
+    }
+    CostPlot plot;
+    plot.device = word(all, "device");
+    for (const std::string& name : order) {
+        if (found[name].size() < 2)
+            continue;
+        CostPlot::Curve curve{name, {}};
+        for (const auto& [x, ms] : found[name])
+            curve.points.push_back({x, median(ms), *std::min_element(ms.begin(), ms.end()),
+                                    *std::max_element(ms.begin(), ms.end())});
+        plot.curves.push_back(std::move(curve));
+    }
+    return plot;
+}
+
+/// Cost against field size and resolution: charts, and what the report says of them.
+std::string cost_charts(const json& all, const fs::path& folder) {
+    std::string out;
+    const auto section = [&](const CostPlot& plot, const std::string& chart, const std::string& x) {
+        if (plot.curves.empty())
+            return;
+        draw_costs(plot, folder / chart);
+        out += text(out.empty() ? "\n## Cost against size\n" : "", "\n![", plot.title, "](", chart,
+                    ")\n\n| ", x, " |");
+        std::string line = "\n| --- |";
+        std::set<double> places;
+        for (const auto& curve : plot.curves)
+            for (const auto& p : curve.points)
+                places.insert(p.x);
+        for (const double p : places) {
+            out += text(" ", p, " |");
+            line += " --- |";
+        }
+        out += line + "\n";
+        for (const auto& curve : plot.curves) {
+            out += "| " + curve.name + " |";
+            for (const double place : places) {
+                const auto at = std::find_if(curve.points.begin(), curve.points.end(),
+                                             [&](const auto& p) { return p.x == place; });
+                out += at == curve.points.end() ? " - |" : " " + fixed(at->ms, 3) + " |";
+            }
+            out += "\n";
+        }
+        out += "\nMedian over views [ms]; bars: the quickest and the slowest view.\n";
+    };
+    const auto family = [](const json& r) { return split(word(r, "scene"), ':').front(); };
+    CostPlot nodes = costs_of(
+        all, [](const json& r) { return number(r, "nodes"); },
+        [&](const json& r) { return text(family(r), ", ", word(r, "state"), ", ", size_of(r)); });
+    nodes.title = "Cost against the field's size";
+    nodes.x_label = "nodes a side";
+    section(nodes, "cost_nodes.png", "nodes a side");
+    CostPlot pixels = costs_of(
+        all, [](const json& r) { return 1e-6 * number(r, "width") * number(r, "height"); },
+        [](const json& r) { return subject_of(r); });
+    pixels.title = "Cost against resolution";
+    pixels.x_label = "million pixels";
+    section(pixels, "cost_pixels.png", "million pixels");
+    return out;
+}
+
+/// Baboud & Decoret's Table 1, if it was measured.
+std::string seed_table_of(const json& all) {
+    if (!all.contains("seed_table"))
+        return {};
+    const json& table = all.at("seed_table");
+    std::string out = text("\n## The seed's Table 1\n\nBaboud & Decoret 2006, Table 1, with tarn: "
+                           "pictures a second (ms) "
+                           "at 800x600 by how much of the picture is water;\nmountain lake of ",
+                           table.at("nodes"), " nodes a side, wind ", table.at("wind_m_per_s"),
+                           " m/s, one sample a pixel. Theirs, on a GeForce 7800 FX with 128 nodes "
+                           "a side: docs/performance.md.\n\n"
+                           "| water |");
+    std::string line = "\n| --- |";
+    for (const json& mode : table.at("modes")) {
+        out += " " + mode.get<std::string>() + " |";
+        line += " --- |";
+    }
+    out += line + "\n";
+    for (const json& row : table.at("rows")) {
+        out += "| " + fixed(100.0 * number(row, "water_share"), 0) + " % |";
+        for (const json& ms : row.at("time_ms"))
+            out += text(" ", fixed(1000.0 / ms.get<double>(), 1), " (", fixed(ms.get<double>(), 3),
+                        ") |");
+        out += "\n";
+    }
+    return out;
+}
+
+} // namespace
+
 std::vector<std::string> effect_names() {
     std::vector<std::string> names;
     for (const bench::Variant& v : bench::variants())
@@ -240,9 +350,13 @@ json measure_matrix(const MatrixWords& words) {
     std::vector<std::pair<std::string, scene::Scene>> loaded; // all errors before any work
     for (const std::string& word : scenes)
         loaded.push_back(named_scene(word));
+    for (const std::string& word : words.scaling)
+        loaded.push_back(named_scene(word));
     const gpu::Context context;
     std::vector<bench::MatrixResult> results;
-    for (auto& [name, scene] : loaded) {
+    for (std::size_t n = 0; n < loaded.size(); ++n) {
+        auto& [name, scene] = loaded[n];
+        const bool as_a_whole = n >= scenes.size();
         const glm::dvec3 sun = glm::normalize(glm::dvec3(0.5, -0.4, 0.75));
         std::vector<double> winds{0.0};
         if (words.wind_m_per_s > 0.0)
@@ -291,10 +405,11 @@ json measure_matrix(const MatrixWords& words) {
                 options.samples = words.samples;
                 options.runs = words.runs;
                 options.budget = words.budget;
-                options.effects = k == 0 ? words.effects : std::vector<std::string>{"all"};
-                if (k == 0)
+                options.effects =
+                    k == 0 && !as_a_whole ? words.effects : std::vector<std::string>{"all"};
+                if (k == 0 && !as_a_whole)
                     options.perceptual = image::visible_share;
-                if (k == 0 &&
+                if (k == 0 && !as_a_whole &&
                     (words.reference == "all" || (words.reference == "calm" && !(wind > 0.0))))
                     options.reference = [&](const scene::Scene& s, const scene::View& v) {
                         return std::optional(reference_picture(s, v, cache));
@@ -306,9 +421,16 @@ json measure_matrix(const MatrixWords& words) {
         }
         scene = {};
     }
+    std::ostringstream out, table;
+    if (words.seed_table) {
+        constexpr int nodes = 1024;
+        bench::write_seed_table(table, nodes, words.wind_m_per_s,
+                                bench::measure_seed_table(scene::mountain_lake(nodes),
+                                                          words.wind_m_per_s, words.runs,
+                                                          console_progress()));
+    }
     end_progress();
-    std::ostringstream out;
-    bench::write_json(out, context.renderer(), TARN_COMMIT, results);
+    bench::write_json(out, context.renderer(), TARN_COMMIT, results, table.str());
     return json::parse(out.str());
 }
 
@@ -389,6 +511,8 @@ void write_report(const json& all, const std::string& folder, const std::string&
           "quicker and nearer.\n";
     for (const std::string& subject : subjects_of(all)) {
         const std::vector<Row> rows = rows_of(all, subject);
+        if (std::all_of(rows.begin(), rows.end(), [](const Row& r) { return r.effect == "all"; }))
+            continue; // its cost alone was asked for
         const std::string chart = "trade_" + file_word(subject) + ".png";
         md << "\n## " << subject << "\n\n![Time against error, " << subject << "](" << chart
            << ")\n\n| part | way | time | mean error | worst view | 99th percentile | visible | "
@@ -453,6 +577,7 @@ void write_report(const json& all, const std::string& folder, const std::string&
             md << "| " << subject_of(r) << " | " << r.at("nodes") << " | " << word(r, "view")
                << " | " << size_of(r) << " | " << ms(*best[place(r)]) << " | " << ms(r) << " | "
                << fixed(number(r, "field_mb"), 1) << " |\n";
+    md << cost_charts(all, folder) << seed_table_of(all);
     write_beside((fs::path(folder) / "report.md").string(), md.str());
 }
 

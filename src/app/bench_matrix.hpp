@@ -11,7 +11,8 @@ namespace tarn::app {
 
 /// What was typed; empty = not given.
 struct MatrixWords {
-    std::vector<std::string> scenes; ///< scene folders, `bowl`, `mountain:NODES`
+    std::vector<std::string> scenes;  ///< scene folders, `bowl`, `mountain:NODES`
+    std::vector<std::string> scaling; ///< scenes drawn as a whole only, for cost against size
     std::vector<std::string> effects, views;
     std::string sizes = "320x240"; ///< the first for everything, others for `all` alone
     std::string reference = "calm";
@@ -19,6 +20,7 @@ struct MatrixWords {
     render::Budget budget; ///< of the planner's row
     double wind_m_per_s = 6.0;
     int samples = 4, runs = 5;
+    bool seed_table = false; ///< besides (bench/seed_table.hpp)
 };
 
 /// Effects that can be named.

@@ -29,7 +29,8 @@ using nlohmann::json;
 
 struct Words {
     MatrixWords matrix;
-    std::string scene, size = "800x600", json_file, chart, from, pictures, report, against;
+    std::string scene, size = "800x600", json_file, chart, pictures, report, against;
+    std::vector<std::string> from;
     std::vector<std::string> scenes, methods, views;
     int synthetic = 1024, runs = 7, rays = 20'000;
     bool intersection = false, failures = false, size_given = false;
@@ -98,7 +99,8 @@ json read_results(const std::string& option, const std::string& path) {
             if (!stored.contains(key))
                 throw Error(option + " " + path + ": has no '" + key + "'",
                             "name a file that --json wrote");
-        if (!stored.at("results").is_array() || stored.at("results").empty())
+        if (!stored.at("results").is_array() ||
+            (stored.at("results").empty() && !stored.contains("seed_table")))
             throw Error(option + " " + path + ": holds no results",
                         "name a file that --json wrote");
         return stored;
@@ -106,6 +108,26 @@ json read_results(const std::string& option, const std::string& path) {
         throw Error(option + " " + path + ": is not understood (" + error.what() + ")",
                     "name a file that --json wrote");
     }
+}
+
+/// Runs done in parts are one; what is there once, a device or the seed's table, is the last one's.
+json read_parts(const std::vector<std::string>& paths) {
+    json all;
+    for (const std::string& path : paths) {
+        json part = read_results("--from", path);
+        if (all.is_null()) {
+            all = std::move(part);
+            continue;
+        }
+        if (part.at("device") != all.at("device"))
+            throw Error("--from " + path + ": was measured on another device than " + paths.front(),
+                        "name the parts of one run");
+        for (const json& r : part.at("results"))
+            all.at("results").push_back(r);
+        if (part.contains("seed_table"))
+            all["seed_table"] = part.at("seed_table");
+    }
+    return all;
 }
 
 void print_table(const json& all) {
@@ -258,8 +280,7 @@ int run_matrix(const Words& words) {
     json against;
     if (!words.against.empty())
         against = read_results("--against", words.against);
-    const json all =
-        words.from.empty() ? measure_matrix(words.matrix) : read_results("--from", words.from);
+    const json all = words.from.empty() ? measure_matrix(words.matrix) : read_parts(words.from);
     try {
         print_matrix(all);
         if (!words.json_file.empty())
@@ -305,7 +326,7 @@ int run_bench(Words words) {
         print_failures(words);
         return 0;
     }
-    const json all = words.from.empty() ? measure(words) : read_results("--from", words.from);
+    const json all = words.from.empty() ? measure(words) : read_parts(words.from);
     try {
         print_table(all);
         if (!words.json_file.empty())
@@ -313,7 +334,7 @@ int run_bench(Words words) {
         if (!words.chart.empty())
             draw_trades(trades_of(all), words.chart);
     } catch (const json::exception& error) {
-        throw Error((words.from.empty() ? "the results" : "--from " + words.from) +
+        throw Error((words.from.empty() ? "the results" : "--from " + words.from.front()) +
                         ": are not understood (" + error.what() + ")",
                     "name a file that --json wrote");
     }
@@ -343,6 +364,11 @@ void add_bench(CLI::App& app, Run& run) {
                   "a row for what the planner makes of this mean relative error");
     c->add_option("--frame-time", m.budget.frame_time_ms,
                   "a row for what the planner makes of this time [ms]");
+    c->add_option("--scaling", m.scaling,
+                  "scenes that are drawn as a whole only, for cost against size, comma between")
+        ->delimiter(',');
+    c->add_flag("--seed-table", m.seed_table,
+                "besides: Table 1 of Baboud & Decoret 2006, pictures a second by share of water");
     c->add_option("--reference", m.reference,
                   "hold pictures of calm water, all or none against the double-precision tracer, "
                   "which takes its time and is kept")
@@ -391,17 +417,22 @@ void add_bench(CLI::App& app, Run& run) {
     CLI::Option* chart =
         c->add_option("--chart", words->chart, "draw time against error (.svg, .png, .pdf)");
     CLI::Option* from =
-        c->add_option("--from", words->from, "results of an earlier --json instead of measuring");
+        c->add_option(
+             "--from", words->from,
+             "results of an earlier --json instead of measuring; parts of a run, comma between")
+            ->delimiter(',');
     failures->excludes(json_file)->excludes(chart)->excludes(from)->excludes(scene);
     from->excludes(scene);
-    c->footer("Examples:\n"
-              "  tarn bench --report out --json out/bench.json\n"
-              "  tarn bench rotoma bowl --effects caustics,shafts --reference all\n"
-              "  tarn bench --against yesterday.json\n"
-              "  tarn bench --intersection --chart walks.svg --json walks.json\n"
-              "  tarn bench rotoma --intersection --methods cone-map,uniform-steps --views shore\n"
-              "  tarn bench --intersection --failures --rays 5000\n"
-              "  tarn bench --intersection --from gpu.json --chart gpu.svg");
+    c->footer(
+        "Examples:\n"
+        "  tarn bench --report out --json out/bench.json\n"
+        "  tarn bench bowl --effects all --scaling mountain:1024,mountain:4096 --report sizes\n"
+        "  tarn bench rotoma bowl --effects caustics,shafts --reference all\n"
+        "  tarn bench --against yesterday.json\n"
+        "  tarn bench --intersection --chart walks.svg --json walks.json\n"
+        "  tarn bench rotoma --intersection --methods cone-map,uniform-steps --views shore\n"
+        "  tarn bench --intersection --failures --rays 5000\n"
+        "  tarn bench --intersection --from gpu.json --chart gpu.svg");
     c->callback([words, size, &run] {
         words->size_given = size->count() > 0;
         words->matrix.runs = words->runs;

@@ -239,4 +239,38 @@ void draw_ways(const WayPlot& plot, const fs::path& path) {
     draw(sheet, script, path);
 }
 
+void draw_costs(const CostPlot& plot, const fs::path& path) {
+    const Sheet sheet = sheet_for(path, 1100, 600);
+    static const char* colours[] = {"#1f5fa8", "#c0392b", "#2a9d8f", "#e07b39",
+                                    "#7b4fa3", "#555555", "#b8860b", "#c2185b"};
+    std::string data, curves, ticks;
+    double least = 1e300, most = 0.0;
+    for (std::size_t k = 0; k < plot.curves.size(); ++k) {
+        data += text("$c", k, " << END\n");
+        for (const auto& p : plot.curves[k].points) {
+            data += text(p.x, " ", p.ms, " ", p.low_ms, " ", p.high_ms, "\n");
+            least = std::min(least, p.x);
+            most = std::max(most, p.x);
+            const std::string tick = text("'", p.x, "' ", p.x);
+            if (ticks.find(tick) == std::string::npos)
+                ticks += (ticks.empty() ? "" : ", ") + tick;
+        }
+        data += "END\n";
+        const char* colour = colours[k % std::size(colours)];
+        curves +=
+            text(k ? ", " : "plot ", "$c", k, " using 1:2 with linespoints lw 2 pt ", k % 8 + 4,
+                 " lc rgb '", colour, "' title ", quoted(plot.curves[k].name), " noenhanced, $c", k,
+                 " using 1:3:(0):($4-$3) with vectors nohead lw 0.7 dashtype 3 lc rgb '", colour,
+                 "' notitle");
+    }
+    draw(sheet,
+         text("set title ", quoted(plot.title + " - " + plot.device),
+              " noenhanced font ',13'\nset logscale xy\nset grid\nset border 3\n",
+              "set tics nomirror\nset xlabel '", plot.x_label,
+              "'\nset ylabel 'time of one picture [ms]'\nset format y '%g'\n",
+              "set key outside right top reverse Left samplen 1.5\nset xrange [", 0.8 * least, ":",
+              1.25 * most, "]\nset xtics (", ticks, ")\n", data, curves, "\nunset output\n"),
+         path);
+}
+
 } // namespace tarn::app

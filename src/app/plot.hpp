@@ -61,4 +61,20 @@ struct WayPlot {
 /// @throws as draw_stages()
 void draw_ways(const WayPlot& plot, const std::filesystem::path& path);
 
+/// Time of a picture against the size of something, a curve each.
+struct CostPlot {
+    std::string title, device, x_label;
+    struct Point {
+        double x, ms, low_ms, high_ms; ///< low and high: the least and the greatest of the views
+    };
+    struct Curve {
+        std::string name;
+        std::vector<Point> points; ///< by x
+    };
+    std::vector<Curve> curves;
+};
+
+/// @throws as draw_stages()
+void draw_costs(const CostPlot& plot, const std::filesystem::path& path);
+
 } // namespace tarn::app

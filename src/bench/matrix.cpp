@@ -155,7 +155,7 @@ std::vector<MatrixResult> run_matrix(const scene::Scene& scene, const MatrixScen
 }
 
 void write_json(std::ostream& out, const std::string& device, const std::string& commit,
-                const std::vector<MatrixResult>& results) {
+                const std::vector<MatrixResult>& results, const std::string& seed_table) {
     out << "{\"device\": " << quoted(device) << ", \"commit\": " << quoted(commit)
         << ", \"results\": [";
     const char* comma = "\n";
@@ -193,7 +193,10 @@ void write_json(std::ostream& out, const std::string& device, const std::string&
         out << "}}";
         comma = ",\n";
     }
-    out << "\n]}\n";
+    out << "\n]";
+    if (!seed_table.empty())
+        out << ", \"seed_table\": " << seed_table;
+    out << "}\n";
 }
 
 } // namespace tarn::bench

@@ -60,9 +60,10 @@ struct MatrixScene {
 std::vector<MatrixResult> run_matrix(const scene::Scene& scene, const MatrixScene& what,
                                      const MatrixOptions& options, const Progress& progress);
 
-/// {"device", "commit", "results": [...]}
+/// {"device", "commit", "results": [...], "seed_table": ...}
+/// @param seed_table  of seed_table.hpp, as JSON; empty: none
 void write_json(std::ostream& out, const std::string& device, const std::string& commit,
-                const std::vector<MatrixResult>& results);
+                const std::vector<MatrixResult>& results, const std::string& seed_table);
 
 /// A JSON string: names of folders and cameras may hold anything.
 std::string quoted(const std::string& words);

@@ -69,8 +69,16 @@ EGLContext create(EGLDisplay display, std::string& why) {
                              5,
                              EGL_CONTEXT_OPENGL_PROFILE_MASK,
                              EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                             EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                             EGL_LOSE_CONTEXT_ON_RESET, // then check_gl() is told of it
                              EGL_NONE};
     EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, wanted);
+    if (!context) { // drivers that know no such notice
+        EGLint plain[std::size(wanted)];
+        std::copy(std::begin(wanted), std::end(wanted), plain);
+        plain[std::size(wanted) - 3] = EGL_NONE;
+        context = eglCreateContext(display, config, EGL_NO_CONTEXT, plain);
+    }
     if (!context) {
         why = "OpenGL 4.5 core is not offered (" + egl_error() + ")";
         return nullptr;

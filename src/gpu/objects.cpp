@@ -102,6 +102,9 @@ void check_gl(const std::string& activity) {
     const GLenum code = glGetError();
     if (code == GL_NO_ERROR)
         return;
+    if (code == GL_CONTEXT_LOST)
+        throw Error("the GPU was lost: its driver has reset it while " + activity,
+                    "start tarn again; if it comes back, try a smaller picture");
     const char* word = code == GL_OUT_OF_MEMORY ? "out of GPU memory" : "OpenGL error";
     std::ostringstream out;
     out << word << " (0x" << std::hex << code << ") while " << activity;

@@ -4,13 +4,13 @@
 // keeps the budget there. Made of what draws alone. Results: docs/planner.md.
 //
 //   tarn_planner_study [--views N] [--size WxH] [--seed N] [--json FILE]
+#include "bench/random_views.hpp"
 #include "bench/timing.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
 #include "gpu/context.hpp"
 #include "image/compare.hpp"
 #include "render/planner.hpp"
-#include "scene/samples.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -18,42 +18,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <glm/geometric.hpp>
 #include <iostream>
-#include <random>
 
 namespace {
 
 using namespace tarn;
-
-struct Lake {
-    const char* name;
-    scene::Scene scene;
-    double wind_m_per_s;
-};
-
-/// Somewhere over or in the lake, looking anywhere that is not all sky.
-scene::Camera random_camera(const scene::Scene& scene, std::mt19937& random) {
-    std::uniform_real_distribution<double> even(0.0, 1.0);
-
-    const Heightfield& g = scene.ground;
-    for (;;) {
-        const double x = std::lerp(g.west_m, g.east_m(), 0.15 + 0.7 * even(random)),
-                     y = std::lerp(g.south_m(), g.north_m, 0.15 + 0.7 * even(random));
-        const auto water = scene.water_level_m(x, y);
-        const double ground = g.elevation_m(x, y), heading = 360.0 * even(random);
-        const double lot = even(random), size = g.east_m() - g.west_m;
-        if (lot < 0.35 && water && *water - ground > 2.0)
-            return scene::look({x, y, std::lerp(ground + 0.5, *water - 0.5, even(random))}, heading,
-                               -50.0 + 100.0 * even(random), 65.0);
-        if (lot >= 0.35)
-            return scene::look({x, y,
-                                std::max(water.value_or(ground), ground) + 2.0 +
-                                    0.15 * size * std::pow(even(random), 3.0)},
-                               lot < 0.7 ? std::atan2(-x, -y) * 180.0 / 3.14159265 : heading,
-                               -45.0 * even(random), 50.0);
-    }
-}
 
 /// A fixed setting of the grid.
 struct Fixed {
@@ -121,24 +90,14 @@ int run(int argc, char** argv) {
               << "| scene | views | within budget | worst, of the budget | mean used | speed-up | "
                  "time of the best fixed setting in that view | of the best one for all |\n"
               << "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
-    std::vector<Lake> lakes;
-    lakes.push_back({"bowl, calm", scene::bowl(513), 0.0});
-    lakes.push_back({"mountain 1024, calm", scene::mountain_lake(1024), 0.0});
-    lakes.push_back({"bowl, wind 3 m/s", scene::bowl(513), 3.0});
-    lakes.push_back({"mountain 1024, wind 6 m/s", scene::mountain_lake(1024), 6.0});
-    lakes.push_back({"mountain 4096, wind 10 m/s", scene::mountain_lake(4096), 10.0});
-    // Green and turbid, as lowland lakes are.
-    lakes[3].scene.optics.absorption_per_m = {0.45, 0.25, 0.6};
-    lakes[3].scene.optics.backscattering_per_m = {0.03, 0.032, 0.034};
-    lakes[3].scene.optics.bands.clear();
+    const std::vector<bench::Lake> lakes = bench::five_lakes();
     std::string rows;
     int all = 0, all_within = 0, all_quick = 0;
     double all_worst = 0.0, log_speed = 0.0;
     std::mt19937 random{unsigned(seed)};
-    for (const Lake& lake : lakes) {
+    for (const bench::Lake& lake : lakes) {
         render::Renderer renderer(lake.scene);
         const std::vector<Fixed> grid = grid_of(lake.wind_m_per_s > 0.0);
-        const double budgets[] = {0.005, 0.01, 0.02, 0.05};
         struct View {
             double budget, error, ms, best_ms, fixed_ms;
             std::vector<double> grid_ms, grid_error;
@@ -147,17 +106,9 @@ int run(int argc, char** argv) {
         double used = 0.0, worst = 0.0, log_sum = 0.0;
         int within = 0;
         for (int k = 0; k < views; ++k) {
-            scene::View view;
-            view.camera = random_camera(lake.scene, random);
-            view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.5, -0.4, 0.75)));
+            scene::View view = bench::random_view(lake, random);
             view.settings = {.width_px = width, .height_px = height, .samples = 1};
-            if (lake.wind_m_per_s > 0.0) {
-                view.waves.model = waves::Model::jonswap;
-                view.waves.wind_m_per_s = lake.wind_m_per_s;
-                if (gpu::is_software())
-                    view.waves.texels = 128;
-            }
-            View v{.budget = budgets[k % 4],
+            View v{.budget = bench::budgets_in_turn[k % 4],
                    .error = 0,
                    .ms = 0,
                    .best_ms = 0,

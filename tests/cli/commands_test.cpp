@@ -416,6 +416,13 @@ TEST(Import, AFailureLeavesNoHalfSceneAndKeepsTheOlderOne) {
     EXPECT_EQ(std::distance(fs::directory_iterator(t.path()), {}), 1);
 }
 
+TEST(Errors, AFolderThatTakesNoFilesIsOneLine) {
+    const std::string& scene = shared().scene;
+    expect_one_line("tarn import " + shared().dem + " --level 10 -o /proc/s", 1, "/proc");
+    expect_one_line("tarn render " + scene + " --size 32x24 --samples 1 -o /proc/p.png", 1, "/proc");
+    expect_one_line("tarn sweep " + scene + " --levels 8 --cameras top --size 32x24 -o /proc/s", 1, "/proc");
+}
+
 TEST(Import, CtrlCAndKillLeaveNoHalfScene) {
     // A grid large enough to be interrupted; killed after various delays.
     const TempFolder t;

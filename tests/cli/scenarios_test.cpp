@@ -4,6 +4,7 @@
 #include "support/bowl_scene.hpp"
 #include "support/files.hpp"
 
+#include <atomic>
 #include <cmath>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -11,7 +12,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 #include <sstream>
+#include <thread>
 
 using namespace tarn;
 using test_support::expect_one_line;
@@ -329,4 +332,102 @@ TEST(Manual, HasAPageForEveryCommandAndCompletesItsOptions) {
     EXPECT_EQ(done.out, "--levels --level\nsweep\n") << done.err;
     if (run("command -v groff").code == 0) // no complaints from roff itself
         EXPECT_EQ(run("groff -ww -man -Tascii " + (t / "tarn-render.1").string()).err, "");
+}
+
+// A disk that fills up in the middle of a sweep: a line for each picture that failed, whole
+// pictures only, and the rest when there is room again.
+TEST(Sweep, AFullDiskLeavesWholePicturesAndIsTakenUpAgain) {
+    const TempFolder t;
+    const std::string command = "tarn sweep " + shared().scene +
+                                " --levels 8,10 --cameras overview --size 160x120 --samples 1 -o " +
+                                (t / "s").string();
+    // Files may grow to so many blocks of 512 bytes and no further: sidecars fit, pictures do not;
+    // then nothing does.
+    for (const int blocks : {20, 1}) {
+        const Outcome full = run("sh -c \"ulimit -f " + std::to_string(blocks) +
+                                 "; trap '' XFSZ; exec " + TARN_PROGRAM + command.substr(4) + "\"");
+        EXPECT_EQ(full.code, 1);
+        EXPECT_EQ(lines(full.err), 3) << full.err; // two pictures, and what is made from them
+        EXPECT_NE(full.err.find("level_8.00_overview: cannot write into"), std::string::npos)
+            << full.err;
+        for (const auto& entry : fs::recursive_directory_iterator(t.path())) {
+            const std::string name = entry.path().filename().string();
+            EXPECT_EQ(name.find(".partial"), std::string::npos) << name;
+            EXPECT_NE(entry.path().extension(), ".png") << name;
+        }
+    }
+    ASSERT_EQ(run(command).code, 0);
+    EXPECT_TRUE(fs::exists(t / "s/scenarios.csv"));
+    for (const char* name : {"s/level_8.00_overview.png", "s/level_10.00_overview.png"})
+        EXPECT_EQ(image::read_rgba(t / name).width_px, 160);
+}
+
+// A GPU that has no more memory, or is lost while it draws: one line, exit code 1, no file.
+TEST(Render, AGpuThatFailsIsOneLine) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "the sanitizer must be loaded first";
+#endif
+    const TempFolder t;
+    const std::string out = (t / "p.png").string();
+    struct Case {
+        const char* fault;
+        const char* words;
+    };
+    for (const Case& c : {Case{"memory:texture", "out of GPU memory"},
+                          Case{"memory:draw", "out of GPU memory"}, Case{"lost", "lost"}}) {
+        const Outcome o = run("env LD_PRELOAD=" + std::string(TARN_FAULTY_GL) +
+                              " TARN_TEST_GL_FAULT=" + c.fault + " " + TARN_PROGRAM + " render " +
+                              shared().scene + " --size 64x48 --samples 1 -o " + out);
+        EXPECT_EQ(o.code, 1) << c.fault;
+        EXPECT_EQ(lines(o.err), 1) << o.err;
+        EXPECT_NE(o.err.find(c.words), std::string::npos) << o.err;
+        EXPECT_FALSE(fs::exists(out)) << c.fault;
+        EXPECT_TRUE(fs::is_empty(t.path())) << c.fault;
+    }
+}
+
+// Two programs with one scene: a picture shows the scene before or after an import that replaces
+// it, never a mixture, and two that write one picture leave one whole one.
+TEST(SceneFolder, TwoProgramsAtOnceSeeWholeScenes) {
+    const TempFolder t;
+    const std::string scene = (t / "s").string();
+    const auto import = [&](int level) {
+        return "tarn import " + shared().dem + " --level " + std::to_string(level) + " -o " + scene;
+    };
+    ASSERT_EQ(run(import(10)).code, 0);
+    std::atomic<bool> done{false};
+    int imports = 0;
+    std::thread other([&] {
+        while (!done) {
+            EXPECT_EQ(run(import(imports % 2 ? 10 : 12)).code, 0);
+            ++imports;
+        }
+    });
+    std::set<double> levels;
+    for (int i = 0; i < 8; ++i) {
+        const std::string out = (t / ("p" + std::to_string(i) + ".png")).string();
+        const Outcome o = run("tarn info " + scene + " --json");
+        ASSERT_EQ(o.code, 0) << o.err;
+        const auto lake = nlohmann::json::parse(o.out).at("lakes").at(0);
+        const double level = lake.at("level_m").get<double>(),
+                     area = lake.at("area_m2").get<double>();
+        levels.insert(level);
+        EXPECT_NEAR(area, M_PI * 500.0 * 500.0 * level / 40.0, 0.01 * area)
+            << "level and area of two scenes";
+        const Outcome drawn =
+            run("tarn render " + scene + " --camera top --size 64x48 --samples 1 -o " + out);
+        EXPECT_EQ(drawn.code, 0) << drawn.err;
+    }
+    done = true;
+    other.join();
+    EXPECT_GT(imports, 2);
+    EXPECT_EQ(levels.size(), 2u) << "nothing happened at the same time";
+    // One picture, two writers.
+    const std::string both = (t / "both.png").string(),
+                      draw = std::string(TARN_PROGRAM) + " render " + scene +
+                             " --size 200x150 --samples 1 -o " + both;
+    ASSERT_EQ(
+        std::system(("sh -c '" + draw + " >/dev/null & " + draw + " >/dev/null; wait'").c_str()),
+        0);
+    EXPECT_EQ(image::read_rgba(both).width_px, 200);
 }
