@@ -29,13 +29,14 @@ struct Field {
     vec2 slope;        // its steepest slopes, units a cell
     float setting;     // of methods that have one: steps, or rays' least stride
     float bend;        // 1/m: level ground falls by this times the squared distance (src/scene/curvature.hpp)
+    float pixel;       // width of a pixel, cells a metre of path
 };
 
 // field_of — the field that a view block describes.
 Field field_of(ViewBlock view) {
     return Field(view.grid.xy - 1.0, view.inverse_size.xy, view.units.x, view.units.yz, view.units.w, view.bounds.w,
                  view.slab.x, view.slab.y, view.base.z, view.walk.x, view.walk.y, view.bounds.xy, view.slab.zw, view.bounds.z,
-                 view.base.w);
+                 view.base.w, view.camera.w * view.base.z);
 }
 
 // Origin and direction per metre of path: columns, rows, height [m]. Columns and rows count from the

@@ -109,7 +109,7 @@ vec3 marked(vec3 albedo, vec2 nodes, float z, bool in_water, float level, float 
         albedo = mix(albedo, in_water ? vec3(0.55) : vec3(0.03, 0.02, 0.01),
                      0.75 * contour_cover(height, interval, slope, footprint));
     }
-    if (view.drape.w > 0.0) {
+    if (view.drape.w > 0.0 && view.exposed.z != (in_water ? 1.0 : 2.0)) {
         vec2 at = (nodes - view.drape.xy) / (view.drape.z * vec2(textureSize(drape, 0)));
         if (all(greaterThan(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)))) {
             float near = textureLod(drape, at, 0.0).r;

@@ -89,7 +89,8 @@ struct ViewBlock {
     vec4 map;             // x: interval of contours on land [m], y: in water, z: depth of the darkest colour of
                           // depth [m]; 0: none of them; w: what is added to z for heights that contours count from
     vec4 drape;           // xy: grid position of its north-west corner, z: nodes a texel, w: reach of nearness [m], 0: none
-    vec4 exposed;         // x: level that the bed was exposed from [m], y: 1 if there is such, zw: -
+    vec4 exposed;         // x: level that the bed was exposed from [m], y: 1 if there is such, z: draped lines
+                          // show everywhere (0), on dry ground (1), on beds (2), w: -
     ivec4 walk;           // x: level of the root block, y: cone map's blocks are 2^y cells a side,
                           // zw: pixels left out after each 8 across and down, for samples of a picture
 };

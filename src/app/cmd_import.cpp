@@ -80,7 +80,7 @@ int run_import(Words& words) {
     scene.look = scene::ground_look(lake.position.lat_deg);
     scene.optics = scene::water_type("clear lake");
     scene.optics = make_water(words.waves, scene);
-    const auto sun = sun_direction(scene, geo::default_time(lake.position));
+    const auto sun = sun_direction(scene, lake.position, geo::default_time(lake.position));
     for (const std::string& name : scene::preset_names())
         scene.cameras.push_back({name, scene::preset_camera(scene, lake, name, sun, 16.0 / 9.0)});
     scene.waves.wind_from_deg -= convergence_deg(scene); // the default counts from true north, too

@@ -98,6 +98,21 @@ std::string next_picture(const fs::path& folder) {
     throw Error(folder.string() + " is full of pictures", "choose another folder with --pictures");
 }
 
+view::Planned planned_of(const render::Plan& plan) {
+    view::Planned out;
+    for (const auto& [name, value] : options_of(plan))
+        out.options[name] = value;
+    for (const render::Decision& d : plan.decisions)
+        if (d.taken)
+            out.reasons.push_back(text(d.part, ": ", d.choice, ", ", d.why,
+                                       d.error > 0.0 ? ": " + percent(d.error, 2) : std::string()));
+    out.speed_up = plan.everything_ms / std::max(plan.predicted_ms, 1e-6);
+    out.reasons.push_back(text("At most ", percent(plan.predicted_error, 2), " of error, ",
+                               fixed(out.speed_up, 1), " times as quick as everything on."));
+    out.kept = plan.kept;
+    return out;
+}
+
 /// @param import  command that makes the scene, where it is a temporary one
 view::Services services_for(const std::string& folder, const scene::Scene& as_imported,
                             const Words& words, const std::string& import) {
@@ -145,6 +160,12 @@ view::Services services_for(const std::string& folder, const scene::Scene& as_im
              .exposure = {},
              .more = {}});
         return path;
+    };
+    out.plan = [](render::Renderer& renderer, const scene::Scene& scene, const scene::View& view,
+                  double max_error, const Progress& progress) {
+        render::Budget budget;
+        budget.max_error = max_error;
+        return planned_of(render::make_plan(renderer, scene, view, budget, progress));
     };
     out.read_layer = [frame = as_imported.frame](const std::string& path) {
         view::Layer layer;
@@ -194,8 +215,8 @@ private:
 
 /// Chooses what the window begins with, for its first view; panels and options change it from
 /// there.
-void plan_start(const Words& words, const scene::Scene& scene, int width_px, int height_px,
-                view::Options& options) {
+view::Planned plan_start(const Words& words, const scene::Scene& scene, int width_px,
+                         int height_px) {
     const gpu::Context context;
     scene::Scene shown = scene;
     ViewWords start = words.view;
@@ -206,12 +227,11 @@ void plan_start(const Words& words, const scene::Scene& scene, int width_px, int
     const render::Plan plan =
         render::make_plan(renderer, shown, view, words.plan.budget, console_progress());
     end_progress();
-    for (const auto& [name, value] : options_of(plan))
-        options[name] = value;
     if (words.plan.explain)
         std::cout << explained(plan) << std::flush;
     else if (!plan.kept)
         spdlog::warn("the budget cannot be kept; --explain says why");
+    return planned_of(plan);
 }
 
 int run_view(const Words& words, view::Options options) {
@@ -252,8 +272,9 @@ int run_view(const Words& words, view::Options options) {
         int width = 1280, height = 800;
         if (const auto size = options.find("size"); size != options.end())
             std::sscanf(size->second.c_str(), "%dx%d", &width, &height);
+        std::optional<view::Planned> plan;
         if (first && words.plan.budget.asked())
-            plan_start(words, scene, width, height, options);
+            plan = plan_start(words, scene, width, height);
         const std::string import =
             temporary ? "tarn import " + *next +
                             (words.view.level_m && first ? text(" --level ", *words.view.level_m)
@@ -271,6 +292,8 @@ int run_view(const Words& words, view::Options options) {
              .stop = interrupted,
              .log = first ? words.log : "",
              .started = started,
+             .plan = std::move(plan),
+             .max_error = words.plan.budget.max_error.value_or(0.01),
              .egl = words.egl});
         options.clear();
         first = false;

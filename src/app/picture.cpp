@@ -172,8 +172,9 @@ std::string describe_time(const ViewWords& words, const scene::Scene& scene) {
         return "sun at azimuth, elevation " + words.sun;
     if (!words.sun_direction.empty())
         return "sun towards " + words.sun_direction;
-    const GeoPoint place = scene.lakes.front().position;
-    return geo::format_time(words.time.empty() ? geo::default_time(place)
+    const GeoPoint place = sun_place(words, scene);
+    return (words.sun_place.empty() ? std::string() : "at " + words.sun_place + ", ") +
+           geo::format_time(words.time.empty() ? geo::default_time(place)
                                                : geo::parse_time(words.time, place));
 }
 

@@ -29,6 +29,8 @@ void add_plan_options(CLI::App& c, PlanWords& w) {
 scene_files::OptionList options_of(const render::Plan& plan) {
     const scene::RenderSettings& s = plan.view.settings;
     scene_files::OptionList out;
+    if (s.coarse_far_land)
+        out.push_back({"coarse-far-land", "true"});
     if (!s.shadows)
         out.push_back({"no-shadows", "true"});
     if (!s.reflection)

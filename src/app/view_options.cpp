@@ -201,10 +201,20 @@ dem::Refill make_refill(const std::string& folder, const scene::Scene& scene, in
                        scene.frame, scene.lakes, lake_id, progress);
 }
 
-glm::dvec3 sun_direction(const scene::Scene& scene, double julian_date_utc) {
-    const GeoPoint place = scene.lakes.front().position;
+GeoPoint sun_place(const ViewWords& w, const scene::Scene& scene) {
+    if (w.sun_place.empty())
+        return scene.lakes.front().position;
+    const auto v = parse_numbers("--sun-place", w.sun_place, 2);
+    if (std::abs(v[0]) > 90.0 || std::abs(v[1]) > 360.0)
+        throw Error("--sun-place '" + w.sun_place + "' is nowhere on Earth",
+                    "write LATITUDE,LONGITUDE in degrees");
+    return {v[0], v[1]};
+}
+
+glm::dvec3 sun_direction(const scene::Scene& scene, const GeoPoint& place, double julian_date_utc) {
     const geo::SunPosition sun = geo::sun_position(place, julian_date_utc);
-    const ScenePoint p = geo::to_scene(scene.frame, place);
+    // Wherever the sun is seen from, its azimuth is turned from the lake's true north.
+    const ScenePoint p = geo::to_scene(scene.frame, scene.lakes.front().position);
     return towards(sun.azimuth_deg - convergence_at(scene, p.x_m, p.y_m), sun.elevation_deg);
 }
 
@@ -325,6 +335,9 @@ void add_view_options(CLI::App& c, ViewWords& w) {
         "--layers", w.layers,
         "vector files (GeoJSON, GeoPackage, GPX, shapefile ...) with : between them, drawn "
         "on ground and bed");
+    c.add_option("--layers-on", w.layers_on,
+                 "where they show, cut by the water's level: all, dry (land), flooded (bed)")
+        ->check(CLI::IsMember({"all", "dry", "flooded"}));
     c.add_option("--level", w.level_m, "water level to show [m]; default: as imported");
     c.add_option("--lake", w.lake, "id of the lake whose level that is (tarn info)")
         ->capture_default_str();
@@ -333,6 +346,9 @@ void add_view_options(CLI::App& c, ViewWords& w) {
     c.add_option("--time", w.time,
                  "date and time for the sun: 2026-06-21T15:00Z, +HH:MM, or none for solar time; "
                  "default: 09:30 solar time at midsummer");
+    c.add_option(
+        "--sun-place", w.sun_place,
+        "LAT,LON that the sun is seen from, and whose solar time it is; default: the lake");
     c.add_option("--sun", w.sun,
                  "AZIMUTH,ELEVATION of the sun [deg from true north, above horizon]");
     c.add_option("--sun-direction", w.sun_direction, "X,Y,Z towards the sun in scene axes (lab)");
@@ -392,6 +408,8 @@ void add_view_options(CLI::App& c, ViewWords& w) {
     c.add_option("--curvature", w.curvature,
                  "the Earth's: on, off, or auto: where its drop could be more than a pixel")
         ->check(CLI::IsMember({"auto", "on", "off"}));
+    c.add_flag("--coarse-far-land", w.coarse_far_land,
+               "take far land's blocks that are narrower than a pixel at their tops");
     c.add_flag("--no-mirrored-land", w.no_mirrored_land, "let the water mirror the sky alone");
     c.add_flag("--no-refraction", w.no_refraction, "leave out what is seen through the surface");
     c.add_flag("--no-sun-disc", w.no_sun_disc, "leave out the sun itself");
@@ -525,6 +543,10 @@ scene::View make_view(const ViewWords& w, scene::Scene& scene) {
     view.settings.shadows = !w.no_shadows;
     view.settings.reflection = !w.no_reflection;
     view.settings.mirrored_land = !w.no_mirrored_land;
+    view.settings.drape_on = w.layers_on == "dry"       ? scene::DrapeOn::dry
+                             : w.layers_on == "flooded" ? scene::DrapeOn::flooded
+                                                        : scene::DrapeOn::all;
+    view.settings.coarse_far_land = w.coarse_far_land;
     if (w.curvature != "auto")
         view.settings.earth_curvature = w.curvature == "on";
     view.settings.refraction = !w.no_refraction;
@@ -535,6 +557,10 @@ scene::View make_view(const ViewWords& w, scene::Scene& scene) {
     view.settings.spectral = w.colour == "spectral";
     view.settings.thrown_back = !w.no_thrown_back;
 
+    if (!w.sun_place.empty() &&
+        (!w.sun.empty() || !w.sun_direction.empty() || !w.environment.empty()))
+        throw Error(
+            "--sun-place goes with --time, not with --sun, --sun-direction or --environment");
     if (int(!w.time.empty()) + int(!w.sun.empty()) + int(!w.sun_direction.empty()) > 1)
         throw Error("--time, --sun and --sun-direction exclude each other");
     const GeoPoint place = scene.lakes.front().position;
@@ -552,8 +578,10 @@ scene::View make_view(const ViewWords& w, scene::Scene& scene) {
         const ScenePoint p = geo::to_scene(scene.frame, place);
         sun = towards(v[0] - convergence_at(scene, p.x_m, p.y_m), v[1]);
     } else {
-        sun = sun_direction(scene, w.time.empty() ? geo::default_time(place)
-                                                  : geo::parse_time(w.time, place));
+        const GeoPoint seen_from = sun_place(w, scene);
+        sun = sun_direction(scene, seen_from,
+                            w.time.empty() ? geo::default_time(seen_from)
+                                           : geo::parse_time(w.time, seen_from));
     }
     view.lighting = scene::clear_sky(sun);
     if (!w.sky_radiance.empty()) {

@@ -12,7 +12,7 @@ namespace tarn::app {
 /// file.
 struct ViewWords {
     std::string camera = "overview", size = "1280x720";
-    std::string time, sun, sun_direction, sun_irradiance, sky_radiance;
+    std::string time, sun, sun_place, sun_direction, sun_irradiance, sky_radiance;
     std::string absorption, backscattering;
     std::optional<std::string> water, water_table;
     std::optional<double> visibility_km;
@@ -23,7 +23,8 @@ struct ViewWords {
     bool no_thrown_back = false;
     std::optional<double> index;
     std::string fresnel = "exact", intersection = "cone-map", caustics = "splat";
-    std::string curvature = "auto";
+    std::string curvature = "auto", layers_on = "all";
+    bool coarse_far_land = false;
     bool no_shadows = false, no_reflection = false, no_mirrored_land = false, no_refraction = false,
          no_sun_disc = false;
     scene::RenderSettings settings;
@@ -90,6 +91,10 @@ std::vector<double> parse_levels(const std::string& words);
 scene::View make_view(const ViewWords& words, scene::Scene& scene);
 
 /// Unit vector towards the sun in scene axes (grid north, not true north), at the first lake.
-glm::dvec3 sun_direction(const scene::Scene& scene, double julian_date_utc);
+glm::dvec3 sun_direction(const scene::Scene& scene, const GeoPoint& place, double julian_date_utc);
+
+/// Where the sun is seen from: as was asked, else the first lake.
+/// @throws tarn::Error  naming the option
+GeoPoint sun_place(const ViewWords& words, const scene::Scene& scene);
 
 } // namespace tarn::app

@@ -44,6 +44,7 @@ std::vector<Variant> variants() {
     for (const bool on : {false, true})
         add("curvature", on ? "on" : "off", false,
             [on](View& v) { v.settings.earth_curvature = on; });
+    add("far land", "coarse", false, [](View& v) { v.settings.coarse_far_land = true; });
     add("shadows", "off", false, [](View& v) { v.settings.shadows = false; });
     add("reflection", "of the sky", false, [](View& v) { v.settings.mirrored_land = false; });
     add("reflection", "off", false, [](View& v) { v.settings.reflection = false; });

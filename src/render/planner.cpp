@@ -145,6 +145,16 @@ private:
         else if (!s.earth_curvature) // else it was asked for
             add("curvature", {{"off", falls + "as little of it is seen",
                                [](View& v) { v.settings.earth_curvature = false; }}});
+        if (s.walk == scene::Walk::cone_map && !s.coarse_far_land) {
+            const double pixel_rad =
+                scene::bend_per_m * drop.distance_m / std::max(drop.pixels, 1e-12);
+            const double from_m = 2.0 * scene_.ground.spacing_m / pixel_rad; // a block of two cells
+            if (from_m < drop.distance_m)
+                add("far land", {{"coarse",
+                                  text("from ", fixed(1e-3 * from_m, 1),
+                                       " km on two cells are narrower than a pixel"),
+                                  [](View& v) { v.settings.coarse_far_land = true; }}});
+        }
         if (s.spectral)
             proved_.push_back({"colour", "three channels",
                                "a frame looks colours up in one table either way: no time is saved",

@@ -200,25 +200,31 @@ std::string Renderer::air_defines() const {
 // The walks of scenes that are small hold none of it.
 std::string Renderer::curved_define() const { return curved_ ? "#define TARN_CURVED 1\n" : ""; }
 
+// Of rays from the camera: only theirs are as wide as a pixel.
+std::string Renderer::coarse_define() const {
+    return coarse_ && walk_ == scene::Walk::cone_map ? "#define TARN_COARSE 1\n" : "";
+}
+
 void Renderer::use_walk(scene::Walk walk, double setting) {
     walk_ = walk;
     const scene::WalkMethod& method = scene::walk_method(walk_);
     block_.bounds.z = float(setting > 0.0 ? setting : method.default_setting);
-    if (passes_.count({walk_, curved_}))
+    const auto key = std::pair(walk_, curved_define() + coarse_define());
+    if (passes_.count(key))
         return;
     const std::string file = walk_file();
     const auto root = gpu::shader_root();
     // See lib/walks/cone_map.glsl.
     const std::string defined =
         (rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "") + curved_define();
-    const auto pass = [&](const char* name) {
+    const auto pass = [&](const char* name, const std::string& more = {}) {
         return gpu::ComputeProgram(gpu::load_shader(
             root, text("passes/", name, ".comp"),
-            {{"lib/walks/cone_map.glsl", "lib/walks/" + file + ".glsl"}}, defined));
+            {{"lib/walks/cone_map.glsl", "lib/walks/" + file + ".glsl"}}, defined + more));
     };
-    passes_.emplace(std::pair(walk_, curved_),
-                    WalkPasses{pass("beams"), pass("primary"), pass("secondary"), pass("shadow"),
-                               pass("first_hit"), pass("trace_rays")});
+    passes_.emplace(key,
+                    WalkPasses{pass("beams"), pass("primary", coarse_define()), pass("secondary"),
+                               pass("shadow"), pass("first_hit"), pass("trace_rays")});
 }
 
 std::string Renderer::walk_file() const {
@@ -231,18 +237,18 @@ const Renderer::WavyPasses& Renderer::wavy_passes() {
     const std::string defined = (rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "") +
                                 waves_->defines() + air_defines() + sunlight_defines() +
                                 (in_slab_ ? "#define TARN_IN_SLAB 1\n" : "");
-    const auto key = std::pair(walk_, defined);
+    const auto key = std::pair(walk_, defined + coarse_define());
     if (const auto known = wavy_passes_.find(key); known != wavy_passes_.end())
         return known->second;
-    const auto pass = [&](const char* name) {
+    const auto pass = [&](const char* name, const std::string& more = {}) {
         return gpu::ComputeProgram(gpu::load_shader(
             gpu::shader_root(), text("passes/", name, ".comp"),
-            {{"lib/walks/cone_map.glsl", "lib/walks/" + walk_file() + ".glsl"}}, defined));
+            {{"lib/walks/cone_map.glsl", "lib/walks/" + walk_file() + ".glsl"}}, defined + more));
     };
     return wavy_passes_
-        .emplace(key,
-                 WavyPasses{pass("primary"), pass("surface"), pass("secondary"), pass("shadow"),
-                            caustics_ ? pass("sunlit") : gpu::ComputeProgram(), pass("shade")})
+        .emplace(key, WavyPasses{pass("primary", coarse_define()), pass("surface", coarse_define()),
+                                 pass("secondary"), pass("shadow"),
+                                 caustics_ ? pass("sunlit") : gpu::ComputeProgram(), pass("shade")})
         .first->second;
 }
 
@@ -507,6 +513,7 @@ void Renderer::prepare(const scene::View& view) {
         (sunlit_.width_px() != settings.width_px || sunlit_.height_px() != 2 * tile_rows))
         sunlit_ = gpu::Texture2D(GL_R32UI, settings.width_px, 2 * tile_rows, 1,
                                  gpu::Filter::nearest, "sunlit");
+    coarse_ = settings.coarse_far_land;
     use_walk(settings.walk, settings.walk_setting);
     hazy_ = light.visibility_m.has_value();
     whole_sky_ = light.sky.whole_turn;
@@ -515,6 +522,7 @@ void Renderer::prepare(const scene::View& view) {
                   float(settings.depth_contours_m.value_or(0.0)),
                   float(settings.depth_colours_m.value_or(0.0)),
                   float(std::fmod(ground.offset_m, 5.0 * interval))};
+    block_.exposed.z = float(int(settings.drape_on));
     mapped_ = settings.contours_m || settings.depth_contours_m || settings.depth_colours_m ||
               scene_.exposed_bed || scene_.drape;
     if (mapped_) {

@@ -159,7 +159,10 @@ private:
     void use_shade();
     std::string air_defines() const;
     std::string curved_define() const;
-    const WalkPasses& walk_passes() const { return passes_.at({walk_, curved_}); }
+    std::string coarse_define() const;
+    const WalkPasses& walk_passes() const {
+        return passes_.at({walk_, curved_define() + coarse_define()});
+    }
     std::string sunlight_defines() const;
     void upload_heights();
     void upload_map();
@@ -189,14 +192,14 @@ private:
     std::map<std::string, gpu::ComputeProgram> shade_; ///< by air_defines()
     const gpu::ComputeProgram* calm_shade_ = nullptr;  ///< of them, for this picture
     std::vector<glm::vec3> sky_made_;                  ///< as it is on the GPU
-    bool hazy_ = false, whole_sky_ = false, mapped_ = false, curved_ = false;
+    bool hazy_ = false, whole_sky_ = false, mapped_ = false, curved_ = false, coarse_ = false;
     gpu::Texture2D exposed_, drape_;
     gpu::Texture2D land_shadow_;
     double shadow_softness_m_ = 1.0;
     bool shadowed_ = false;                ///< land's shadow lies on some of the water
     std::optional<glm::dvec3> shadow_sun_; ///< as the shadow was worked out last
     FieldBounds bounds_;
-    std::map<std::pair<scene::Walk, bool>, WalkPasses> passes_; ///< and whether rays are curved
+    std::map<std::pair<scene::Walk, std::string>, WalkPasses> passes_; ///< and what is defined
     std::map<std::pair<scene::Walk, std::string>, WavyPasses> wavy_passes_;
     std::optional<WaveField> waves_;
     std::optional<double> wave_time_s_; ///< that they show

@@ -58,6 +58,9 @@ struct CausticsMethod {
 /// All methods, off first.
 const std::vector<CausticsMethod>& caustics_methods();
 
+/// Where draped lines show, by the water's level.
+enum class DrapeOn { all, dry, flooded };
+
 struct RenderSettings {
     int width_px = 1280; ///< [1, 16384]
     int height_px = 720; ///< [1, 16384]
@@ -83,8 +86,11 @@ struct RenderSettings {
     std::optional<double> depth_contours_m; ///< interval on beds, depths, [.01, 1e4]
     std::optional<double> depth_colours_m;  ///< water is a sheet in the colours of its depth, the
                                             ///< darkest at this one, [.01, 1e5]
+    DrapeOn drape_on = DrapeOn::all;        ///< of layers
     Walk walk = Walk::cone_map;
-    double walk_setting = 0.0; ///< 0: the method's default; else [1, 65536]
+    bool coarse_far_land = false; ///< land's blocks narrower than a pixel are met at their tops; of
+                                  ///< cone_map only, whose file says how far that is off
+    double walk_setting = 0.0;    ///< 0: the method's default; else [1, 65536]
 
     /// @throws tarn::Error  naming the field, its value and the legal range
     void validate() const;

@@ -25,6 +25,21 @@ double smooth(double t) { return t * t * (3.0 - 2.0 * t); }
 
 } // namespace
 
+PadInput read_pad(const float* axes) {
+    const auto stick = [&](int a) { return std::abs(axes[a]) < 0.15f ? 0.0 : double(axes[a]); };
+    const auto trigger = [&](int a) {
+        const double pulled = 0.5 * (double(axes[a]) + 1.0);
+        return pulled < 0.075 ? 0.0 : pulled;
+    };
+    PadInput out;
+    out.push.right = stick(0);
+    out.push.forward = -stick(1);
+    out.push.up = trigger(5) - trigger(4);
+    out.turn_right = stick(2);
+    out.turn_up = -stick(3);
+    return out;
+}
+
 Pose pose_of(const scene::Camera& camera) {
     Pose out{.position = camera.position, .fov_deg = camera.fov_deg};
     const glm::dvec3& f = camera.forward;

@@ -28,6 +28,14 @@ struct Push {
     bool any() const { return forward != 0.0 || right != 0.0 || up != 0.0; }
 };
 
+/// What a gamepad asks for, by its axes in GLFW's standard order: left x and y, right x and y, left
+/// and right trigger. Triggers rest at -1. Small values are a stick's play.
+struct PadInput {
+    Push push;
+    double turn_right = 0.0, turn_up = 0.0; ///< of full speed
+};
+PadInput read_pad(const float* axes);
+
 /// The camera over one scene. Collides with the ground; goes through water as if it were air.
 class Flight {
 public:

@@ -204,6 +204,10 @@ std::vector<Label> find_labels(const Session& session, const Screen& screen) {
             if (point.label.empty() || ++asked > 200) // each asks the GPU
                 continue;
             const double x = point.place.x, y = point.place.y;
+            const bool flooded = session.scene.water_level_m(x, y).has_value();
+            if (session.view.settings.drape_on ==
+                (flooded ? scene::DrapeOn::dry : scene::DrapeOn::flooded))
+                continue;
             const glm::dvec3 place(x, y,
                                    std::max(session.scene.water_level_m(x, y).value_or(-1e9),
                                             session.scene.ground.elevation_m(x, y)));

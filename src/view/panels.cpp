@@ -151,8 +151,15 @@ bool sun_panel(Session& session) {
         }
         if (ImGui::SliderInt("date", &now.day, 1, 365, words.substr(0, 10).c_str()))
             changed |= session.set("time", format_solar(now));
-        ImGui::TextDisabled("mean solar time at the lake");
+        ImGui::TextDisabled("mean solar time %s",
+                            session.option("sun-place").empty() ? "at the lake" : "at that place");
         ImGui::Checkbox("play", &session.play_sun);
+        static char place[64] = "";
+        if (!ImGui::IsAnyItemActive())
+            std::snprintf(place, sizeof place, "%s", session.option("sun-place").c_str());
+        if (ImGui::InputTextWithHint("place", "LAT,LON; empty: the lake", place, sizeof place,
+                                     ImGuiInputTextFlags_EnterReturnsTrue))
+            changed |= session.set("sun-place", place);
     } else {
         ImGui::Text("%s", session.option("time").c_str());
         if (ImGui::Button("in solar time instead"))
@@ -259,6 +266,24 @@ bool effects_panel(Session& session, PanelState& state, Requests& asked) {
     return changed;
 }
 
+bool planner_panel(Session& session, Requests& asked) {
+    auto percent = float(100.0 * session.max_error);
+    if (ImGui::SliderFloat("error", &percent, 0.1f, 10.0f, "at most %.1f %%",
+                           ImGuiSliderFlags_Logarithmic))
+        session.max_error = 0.01 * double(percent);
+    asked.plan = ImGui::Button("plan this view");
+    ImGui::SameLine();
+    const bool dropped = ImGui::Button("draw everything");
+    if (dropped)
+        session.drop_plan();
+    ImGui::Checkbox("again where the camera rests", &session.plan_at_rest);
+    if (session.reasons.empty())
+        ImGui::TextWrapped("Leaves out what this view does not show, by trials on a sample of it.");
+    for (const std::string& reason : session.reasons)
+        ImGui::TextWrapped("%s", reason.c_str());
+    return dropped;
+}
+
 bool exposure_panel(Session& session, const Screen& screen) {
     bool changed = false;
     bool automatic = session.option("exposure").empty();
@@ -353,7 +378,7 @@ bool map_panel(Session& session) {
     return changed;
 }
 
-void measure_panel(Session& session, PanelState& state) {
+void measure_panel(Session& session, PanelState& state, Requests& asked) {
     int kind = int(session.measuring);
     ImGui::RadioButton("off", &kind, 0);
     ImGui::SameLine();
@@ -378,6 +403,9 @@ void measure_panel(Session& session, PanelState& state) {
     ImGui::SameLine();
     if (ImGui::Button("add") && state.layer[0] != '\0')
         session.add_layer(state.layer);
+    if (!session.layers.empty() &&
+        choice(session, "show", "layers-on", {"all", "dry", "flooded"}, "all"))
+        asked.view_changed = true;
     for (std::size_t i = 0; i < session.layers.size(); ++i) {
         ImGui::BulletText("%s", session.layers[i].name.c_str());
         ImGui::SameLine();
@@ -437,11 +465,13 @@ Requests draw_panels(Session& session, const Screen& screen, PanelState& state, 
         if (section("Cameras", false))
             asked.view_changed |= camera_panel(session, state);
         if (section("Measure, layers", false))
-            measure_panel(session, state);
+            measure_panel(session, state, asked);
         if (section("Map", false))
             asked.view_changed |= map_panel(session);
         if (section("Effects and methods", false))
             asked.view_changed |= effects_panel(session, state, asked);
+        if (section("No more than it needs", false))
+            asked.view_changed |= planner_panel(session, asked);
         if (section("Exposure", false))
             asked.view_changed |= exposure_panel(session, screen);
         if (section("Picture", false))

@@ -12,6 +12,7 @@ namespace tarn::view {
 struct Requests {
     bool view_changed = false; ///< options, hence the picture
     bool save_picture = false;
+    bool plan = false;
     bool time_passes = false;
     std::string open; ///< a scene folder or DEM to show next
 };

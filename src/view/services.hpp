@@ -13,6 +13,10 @@
 #include <string>
 #include <vector>
 
+namespace tarn::render {
+class Renderer;
+}
+
 namespace tarn::view {
 
 /// What the water holds at a level.
@@ -48,6 +52,14 @@ struct Layer {
     std::vector<Point> points;
 };
 
+/// How a view is drawn within a budget of error, and why.
+struct Planned {
+    Options options;                  ///< that draw so
+    std::vector<std::string> reasons; ///< a line each
+    double speed_up = 1.0;            ///< over everything at its best, predicted
+    bool kept = true;                 ///< false: nothing keeps the budget, this comes nearest
+};
+
 struct Services {
     /// The view that the options ask for; puts the water's optics into the scene.
     /// @throws tarn::Error  saying which option is wrong
@@ -66,6 +78,11 @@ struct Services {
         save_picture;
     /// @throws tarn::Error
     std::function<Layer(const std::string& path)> read_layer;
+    /// Chooses what a view needs for a mean relative radiance error; takes as long as some fifteen
+    /// pictures. @throws tarn::Error, tarn::Cancelled
+    std::function<Planned(render::Renderer&, const scene::Scene&, const scene::View&,
+                          double max_error, const Progress&)>
+        plan;
 };
 
 } // namespace tarn::view

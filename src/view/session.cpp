@@ -71,6 +71,43 @@ bool Session::set(const Options& changes) {
     }
 }
 
+scene::View Session::unplanned_view() {
+    Options options = all_options();
+    for (const auto& [name, value] : before_plan_)
+        if (value.empty())
+            options.erase(name);
+        else
+            options[name] = value;
+    return services.make_view(options, scene);
+}
+
+void Session::take_plan(const Planned& plan) {
+    std::map<std::string, std::string> before;
+    Options changes;
+    for (const auto& [name, value] : before_plan_)
+        changes[name] = value; // what the new plan says nothing of is as it was
+    for (const auto& [name, value] : plan.options) {
+        const auto known = before_plan_.find(name);
+        before[name] = known != before_plan_.end() ? known->second : option(name);
+        changes[name] = value;
+    }
+    if (!set(changes))
+        return;
+    before_plan_ = std::move(before);
+    reasons = plan.reasons;
+    planned_for = flight.pose();
+    if (!plan.kept)
+        say("nothing keeps that budget; this comes nearest");
+}
+
+void Session::drop_plan() {
+    set(Options(before_plan_.begin(), before_plan_.end()));
+    before_plan_.clear();
+    reasons.clear();
+    planned_for.reset();
+    plan_at_rest = false;
+}
+
 Options Session::all_options() const {
     Options out = options_;
     const Pose& p = flight.pose();

@@ -9,6 +9,7 @@
 
 #include <deque>
 #include <future>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -97,6 +98,17 @@ public:
     std::vector<Message> take_said() { return std::exchange(said_, {}); }
     std::deque<Message> messages;
 
+    // --- the planner -----------------------------------------------------------------------------
+    double max_error = 0.01;          ///< to plan with
+    bool plan_at_rest = false;        ///< again, whenever the camera has come to rest elsewhere
+    std::vector<std::string> reasons; ///< of the last plan; empty: there is none
+    std::optional<Pose> planned_for;
+    /// The view without what the last plan chose: what the next one begins with.
+    scene::View unplanned_view();
+    void take_plan(const Planned& plan);
+    /// Draws everything again.
+    void drop_plan();
+
     // --- bookmarks -------------------------------------------------------------------------------
     void add_bookmark(const std::string& name);
     void remove_bookmark(const std::string& name);
@@ -130,6 +142,7 @@ private:
     bool scene_changed_ = false, map_changed_ = false;
     std::vector<Message> said_;
     std::vector<std::string> layer_paths_;
+    std::map<std::string, std::string> before_plan_; ///< of the options that it set
 };
 
 } // namespace tarn::view

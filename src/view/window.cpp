@@ -47,6 +47,11 @@ public:
         stop_ = settings.stop;
         if (!settings.message.empty())
             session_.complain(settings.message);
+        session_.max_error = settings.max_error;
+        if (settings.plan) {
+            session_.take_plan(*settings.plan);
+            session_.plan_at_rest = !gpu::is_software(); // where it takes a second
+        }
         if (gpu::is_software() && session_.option("samples").empty())
             session_.picture_samples = 4;
         last_s_ = now_s();
@@ -86,6 +91,7 @@ private:
     void mouse();
     void read_pointer();
     void save_picture();
+    void plan(int width, int height);
     void log_frame(double began_s, bool first);
     void take_changes(double now);
     bool draw(bool time_passes, double now, int width, int height, double seconds);
@@ -223,17 +229,12 @@ void App::keys(double seconds) {
     }
     GLFWgamepadstate pad;
     if (glfwGetGamepadState(GLFW_JOYSTICK_1, &pad)) {
-        const auto axis = [&](int a) {
-            const float v = pad.axes[a];
-            return std::abs(v) < 0.15f ? 0.0 : double(v);
-        };
-        push.right += axis(GLFW_GAMEPAD_AXIS_LEFT_X);
-        push.forward -= axis(GLFW_GAMEPAD_AXIS_LEFT_Y);
-        push.up +=
-            0.5 * (axis(GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER) - axis(GLFW_GAMEPAD_AXIS_LEFT_TRIGGER));
-        const double x = axis(GLFW_GAMEPAD_AXIS_RIGHT_X), y = axis(GLFW_GAMEPAD_AXIS_RIGHT_Y);
-        if (x != 0.0 || y != 0.0) {
-            session_.flight.turn(90.0 * x * seconds, -60.0 * y * seconds);
+        const PadInput input = read_pad(pad.axes);
+        push.right += input.push.right;
+        push.forward += input.push.forward;
+        push.up += input.push.up;
+        if (input.turn_right != 0.0 || input.turn_up != 0.0) {
+            session_.flight.turn(90.0 * input.turn_right * seconds, 60.0 * input.turn_up * seconds);
             changed_ = moving_ = true;
         }
     }
@@ -378,6 +379,33 @@ void App::save_picture() {
                      session_.services.save_picture(picture, session_.scene, view, options));
     } catch (const std::exception& error) {
         session_.complain(error.what());
+    }
+    changed_ = true;
+    last_s_ = now_s();
+}
+
+// What the view at rest needs, for as long as it is looked at.
+void App::plan(int width, int height) {
+    try {
+        scene::View view = session_.unplanned_view();
+        view.camera = camera_of(session_.flight.pose());
+        view.settings.width_px = width;
+        view.settings.height_px = height;
+        view.settings.samples = 1; // as one flies
+        const Planned plan = session_.services.plan(
+            renderer_, session_.scene, view, session_.max_error,
+            Progress([this](double share, const std::string&) {
+                return show_progress("finding out what this view needs", share);
+            }));
+        session_.take_plan(plan);
+        log_.write(now_s() - started_s_, "plan",
+                   {{"speed_up", plan.speed_up}, {"reasons", double(plan.reasons.size())}});
+    } catch (const Cancelled&) {
+        session_.say("nothing was planned");
+        session_.plan_at_rest = false;
+    } catch (const std::exception& error) {
+        session_.complain(error.what());
+        session_.plan_at_rest = false;
     }
     changed_ = true;
     last_s_ = now_s();
@@ -538,6 +566,10 @@ void App::frame() {
     was_moving_ = moving_;
     if (std::exchange(save_asked_, false)) // between two frames
         save_picture();
+    const bool rests = session_.plan_at_rest && shown_once_ && !moving_ && now - moved_s_ > 1.0 &&
+                       now - level_s_ > 1.0 && session_.planned_for != session_.flight.pose();
+    if (asked.plan || rests)
+        plan(width, height);
     frames_ += 1.0;
     if (now - frames_since_s_ > 1.0) {
         state_.frames_per_s = frames_ / (now - frames_since_s_);

@@ -17,7 +17,9 @@ struct WindowSettings {
     std::function<bool()> stop; ///< asked each frame: is the window to close?
     std::string log;            ///< file for what goes on (session_log.hpp); empty: none
     std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
-    bool egl = false; ///< ask GLFW for an EGL context instead of the platform's own
+    std::optional<Planned> plan; ///< made before the window opened
+    double max_error = 0.01;     ///< of that, and of others to come
+    bool egl = false;            ///< ask GLFW for an EGL context instead of the platform's own
 };
 
 /// Shows the scene until somebody closes the window.

@@ -3,7 +3,8 @@
 // --report FOLDER` draws what it wrote.
 //
 //   tarn_matrix_bench [--scenes bowl,mountain:4096] [--scaling mountain:1024] [--size WxH,WxH]
-//                     [--wind M/S] [--samples N] [--runs N] [--views NAME,NAME]
+//                     [--wind M/S] [--samples N] [--runs N] [--views NAME,NAME] [--effects
+//                     NAME,NAME]
 //                     [--seed-table 1] [--json FILE]
 #include "bench/matrix.hpp"
 #include "bench/seed_table.hpp"
@@ -27,6 +28,7 @@ using namespace tarn;
 int run(int argc, char** argv) {
     std::string scenes = "bowl,mountain:4096", scaling, sizes = "1920x1080", json, views;
     bench::MatrixOptions options{.runs = 31};
+    std::vector<std::string> effects;
     bool seed_table = false;
     double wind = 6.0;
     for (int i = 1; i < argc; ++i) {
@@ -50,6 +52,8 @@ int run(int argc, char** argv) {
             options.runs = std::max(1, std::atoi(value.c_str()));
         else if (word == "--views")
             views = value;
+        else if (word == "--effects")
+            effects = split(value, ',');
         else if (word == "--json")
             json = value;
         else
@@ -85,9 +89,10 @@ int run(int argc, char** argv) {
         for (const std::string& size : split(sizes, ',')) {
             if (std::sscanf(size.c_str(), "%dx%d", &options.width_px, &options.height_px) != 2)
                 throw Error("--size '" + size + "' is not understood");
-            options.effects = first ? std::vector<std::string>{} : std::vector<std::string>{"all"};
+            options.effects = first ? effects : std::vector<std::string>{"all"};
             first = false;
-            for (const double speed : {0.0, wind}) {
+            for (const double speed :
+                 wind > 0.0 ? std::vector<double>{0.0, wind} : std::vector<double>{0.0}) {
                 bench::MatrixScene what;
                 what.name = name;
                 what.state = speed > 0.0 ? text("wind ", speed, " m/s") : "calm";

@@ -419,8 +419,10 @@ TEST(Import, AFailureLeavesNoHalfSceneAndKeepsTheOlderOne) {
 TEST(Errors, AFolderThatTakesNoFilesIsOneLine) {
     const std::string& scene = shared().scene;
     expect_one_line("tarn import " + shared().dem + " --level 10 -o /proc/s", 1, "/proc");
-    expect_one_line("tarn render " + scene + " --size 32x24 --samples 1 -o /proc/p.png", 1, "/proc");
-    expect_one_line("tarn sweep " + scene + " --levels 8 --cameras top --size 32x24 -o /proc/s", 1, "/proc");
+    expect_one_line("tarn render " + scene + " --size 32x24 --samples 1 -o /proc/p.png", 1,
+                    "/proc");
+    expect_one_line("tarn sweep " + scene + " --levels 8 --cameras top --size 32x24 -o /proc/s", 1,
+                    "/proc");
 }
 
 TEST(Import, CtrlCAndKillLeaveNoHalfScene) {

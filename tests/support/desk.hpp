@@ -82,12 +82,12 @@ private:
 /// Is what a driven window needs installed?
 inline bool has_desk() {
     return std::system("command -v Xvfb >/dev/null && command -v xdotool >/dev/null && "
-                       "command -v import >/dev/null") == 0;
+                       "command -v import >/dev/null && command -v xprop >/dev/null") == 0;
 }
 
 #define TARN_NEEDS_DESK()                                                                          \
     if (!::tarn::test_support::has_desk())                                                         \
-    GTEST_SKIP() << "no Xvfb, xdotool or import here: scripts/setup test installs them"
+    GTEST_SKIP() << "no Xvfb, xdotool, xprop or import here: scripts/setup test installs them"
 
 /// One screen with one window of `tarn view` on it.
 class Desk {
@@ -98,10 +98,11 @@ public:
         const std::string number = (folder_ / "display").string();
         // The shell hands its descriptor 3 on: Xvfb writes the number of its display there.
         server_ = std::make_unique<Process>(
-            std::vector<std::string>{"sh", "-c",
-                                     "exec Xvfb -displayfd 3 -screen 0 1300x900x24 -nolisten tcp "
-                                     "3>'" +
-                                         number + "'"},
+            std::vector<std::string>{
+                "sh", "-c",
+                "exec Xvfb -displayfd 3 -screen 0 1300x900x24 -nolisten tcp -noreset "
+                "3>'" +
+                    number + "'"},
             (folder_ / "xvfb.log").string());
         for (int i = 0; i < 500 && display_.empty(); ++i) {
             pause(0.02);
@@ -114,6 +115,15 @@ public:
 
     std::string log_path() const { return (folder_ / "session.log").string(); }
     std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
+
+    /// As a screen of fine pixels says to programs that ask: 96 dots an inch is a scale of 1.
+    void set_dpi(int dpi) const {
+        const std::string line =
+            "DISPLAY=" + display_ +
+            " xprop -root -f RESOURCE_MANAGER 8s -set RESOURCE_MANAGER 'Xft.dpi:\t" +
+            std::to_string(dpi) + "\n'";
+        EXPECT_EQ(std::system(line.c_str()), 0);
+    }
 
     /// Starts `tarn view` and waits for its first picture.
     void open(const std::string& scene, std::vector<std::string> more = {},

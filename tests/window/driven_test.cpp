@@ -225,7 +225,7 @@ TEST(Driven, EveryPanelOpens) {
     pause(4.0);
     const Picture before = desk.screenshot();
     const std::vector<int> rows = headers(before);
-    ASSERT_EQ(rows.size(), 11u); // all sections
+    ASSERT_EQ(rows.size(), 12u); // all sections
     // From the last up, so that those above stay where they are. The first two are open at first.
     for (std::size_t i = rows.size(); i-- > 0;) {
         desk.click(150, rows[i], 0.35);
@@ -234,6 +234,60 @@ TEST(Driven, EveryPanelOpens) {
         EXPECT_GT(difference(before, after, 20, rows[i] + 12, 325, bottom), 0.5) << "section " << i;
         desk.click(150, rows[i], 0.35);
     }
+    EXPECT_EQ(desk.count("complaint"), 0);
+    EXPECT_EQ(desk.count("gl error"), 0);
+    desk.key("ctrl+q");
+    EXPECT_EQ(desk.program().wait(20.0), 0) << desk.said();
+}
+
+// A screen with 192 dots an inch: letters and panels twice as large, the picture as before.
+TEST(Driven, FinePixelsGetLargePanels) {
+    TARN_NEEDS_DESK();
+    const auto panel_height = [](int dpi) {
+        Desk desk;
+        if (dpi > 0)
+            desk.set_dpi(dpi);
+        desk.open(sample().scene);
+        pause(1.0);
+        const Picture p = desk.screenshot();
+        EXPECT_EQ(desk.count("gl error"), 0);
+        desk.key("ctrl+q");
+        EXPECT_EQ(desk.program().wait(20.0), 0) << desk.said();
+        // The first header: rows of its colour near the panel's left end.
+        int first = -1, last = -1;
+        for (int y = dpi > 96 ? 60 : 30; y < 300 && last < 0; ++y) { // below the title
+            const int x = dpi > 96 ? 480 : 240;                      // right of the name
+            const Rgb c = mean(p, x, y, x + 2, y + 1);
+            const bool here =
+                c.g > c.r + 28 && c.b > c.g + 8 && c.b < c.g + 26 && c.g > 55 && c.g < 90;
+            if (here && first < 0)
+                first = y;
+            if (!here && first >= 0 && y - first >= 8)
+                last = y;
+        }
+        return double(last - first);
+    };
+    const double usual = panel_height(0), fine = panel_height(192);
+    EXPECT_GT(usual, 12.0);
+    EXPECT_NEAR(fine / usual, 2.0, 0.15) << usual << " and " << fine << " rows";
+}
+
+// The planner's section: a click finds out what the view needs, and says so.
+TEST(Driven, PlansTheViewAndDrawsEverythingAgain) {
+    TARN_NEEDS_DESK();
+    Desk desk;
+    desk.open(sample().scene, {}, "640x860");
+    ASSERT_TRUE(desk.wait_for("level", 60.0));
+    pause(3.0);
+    std::vector<int> rows = headers(desk.screenshot());
+    ASSERT_EQ(rows.size(), 12u);
+    desk.click(150, rows[8], 1.0); // "No more than it needs"
+    const int line = rows[11] - rows[10];
+    desk.click(70, rows[8] + 2 * line, 0.5); // below a slider, "plan this view"
+    ASSERT_TRUE(desk.wait_for("plan", 120.0)) << "not planned";
+    EXPECT_GE(desk.last("plan")["reasons"].get<double>(), 2.0); // curvature, and the sum of all
+    pause(1.0);
+    desk.screenshot("planned");
     EXPECT_EQ(desk.count("complaint"), 0);
     EXPECT_EQ(desk.count("gl error"), 0);
     desk.key("ctrl+q");

@@ -171,6 +171,23 @@ TEST(Flight, AnyPushTakesOver) {
     EXPECT_FALSE(flight.under_way());
 }
 
+TEST(Flight, AGamepadAtRestDoesNothing) {
+    const float rest[6] = {0.05f, -0.1f, 0.0f, 0.14f, -1.0f, -1.0f};
+    const view::PadInput none = view::read_pad(rest);
+    EXPECT_FALSE(none.push.any());
+    EXPECT_EQ(none.turn_right, 0.0);
+    EXPECT_EQ(none.turn_up, 0.0);
+    const float all[6] = {1.0f, -1.0f, 0.5f, -0.5f, -1.0f, 1.0f};
+    const view::PadInput input = view::read_pad(all);
+    EXPECT_EQ(input.push.right, 1.0);
+    EXPECT_EQ(input.push.forward, 1.0); // sticks count downwards
+    EXPECT_EQ(input.push.up, 1.0);
+    EXPECT_EQ(input.turn_right, 0.5);
+    EXPECT_EQ(input.turn_up, 0.5);
+    const float sink[6] = {0, 0, 0, 0, 1.0f, -1.0f};
+    EXPECT_EQ(view::read_pad(sink).push.up, -1.0);
+}
+
 TEST(Pacing, FindsTheFinestThatIsQuickEnough) {
     for (const double cost_ms : {20.0, 150.0, 700.0, 3000.0}) { // of a whole picture
         const double fixed_ms = 8.0;

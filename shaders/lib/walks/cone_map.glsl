@@ -7,6 +7,8 @@
 //          solved and left through its border, counted in whole cells. So no epsilon is needed, and
 //          there are at most eight steps for each column and row.
 // Fails    at float32's limits only: docs/limits.md. Slow where a ray skims rough ground for long.
+// Coarse   with TARN_COARSE no longer exact: where a block of dry ground is narrower than a pixel, its top is taken
+//          for the ground, and no patch is solved. Outlines of far land rise by less than their slope times a pixel.
 // Bounds   RG16, a texel a block, of the ground, or of the higher of ground and water: its top; and slope, free
 //          distance and the mark of water in one code (src/core/cone_map.hpp).
 #include "lib/heightfield.glsl"
@@ -122,6 +124,19 @@ bool trace_field(sampler2D heights, sampler2D bounds, Field field, Ray ray, floa
 #ifdef TARN_CONES_A_LOOK
         if (!look)
             continue;
+#endif
+#ifdef TARN_COARSE
+        // A ray along a pixel of far land: by whole blocks, until one stands in its way.
+        if (t * field.pixel > side && !(with_water && cone_wet(cone.y))) {
+            if (height_at(span, t) <= unit * cone.x) {
+                hit = hit_at(field, ray, span, t, false);
+                return true;
+            }
+            t += 0.5 * side * inverse_pace;
+            if (t >= span.t_end)
+                return false;
+            continue;
+        }
 #endif
         bool wet = with_water && cone_wet(cone.y);
         for (int k = 0; k < TARN_LOOKS; ++k) {
