@@ -209,6 +209,34 @@ TEST(Render, CameraHeadingIsTrueNorthAndPlacesAreLatLon) {
     EXPECT_NEAR(std::stod(m[6]), -std::sin(10 * M_PI / 180), 1e-6);
 }
 
+// Noon in June: high in the south at 45 degrees north, in the north from the Cape, below the
+// horizon on the other side.
+TEST(Render, TheSunIsSeenFromThePlaceThatIsNamed) {
+    const TempFolder t;
+    const auto mean = [&](const std::string& options) {
+        const std::string out = (t / "p.exr").string();
+        const Outcome o = run("tarn render " + shared().scene +
+                              " --camera top --size 32x32 --samples 1 --ground-albedo .3 " +
+                              options + " -o " + out);
+        EXPECT_EQ(o.code, 0) << o.err;
+        double sum = 0.0;
+        for (const glm::vec3& c : image::read_exr(out).radiance)
+            sum += c.g;
+        return sum / 1024.0;
+    };
+    const double here = mean("--time 2026-06-21T12:00Z --sun-place 45,0"),
+                 cape = mean("--time 2026-06-21T12:00Z --sun-place -34,0"),
+                 beyond = mean("--time 2026-06-21T12:00Z --sun-place 45,180");
+    EXPECT_GT(here, 1.5 * cape);
+    EXPECT_GT(cape, 20.0 * beyond);
+    expect_one_line("tarn render " + shared().scene + " --sun-place 95,0 -o " +
+                        (t / "x.png").string(),
+                    1, "nowhere on Earth");
+    expect_one_line("tarn render " + shared().scene + " --sun-place 5,0 --sun 90,20 -o " +
+                        (t / "x.png").string(),
+                    1, "--sun-place goes with --time");
+}
+
 TEST(Render, ASettingsFileMeansTheSameAsTheOptions) {
     const TempFolder t;
     std::ofstream(t / "lab.toml")

@@ -283,6 +283,23 @@ TEST(Layers, AreDrawnWhereTheyLie) {
         rows_with += count > 60;
     EXPECT_GE(rows_with, 1); // a line from west to east
     EXPECT_LE(rows_with, 5);
+    // Cut by the level: the track from west to east lies half in the water.
+    std::map<std::string, int> red;
+    for (const char* part : {"all", "dry", "flooded"}) {
+        const std::string out = (t / (std::string(part) + ".png")).string();
+        ASSERT_EQ(run("tarn render " + scene + view + "--exposure 1 --layers-on " + part +
+                      " --layers " + (t / "track.geojson").string() + " -o " + out)
+                      .code,
+                  0);
+        const Picture cut = image::read_rgba(out);
+        for (std::size_t i = 0; i + 4 <= cut.bytes.size(); i += 4)
+            red[part] +=
+                cut.bytes[i] > cut.bytes[i + 2] + 60 && cut.bytes[i] > cut.bytes[i + 1] + 60;
+    }
+    EXPECT_GT(red["dry"], 10);
+    EXPECT_GT(red["flooded"], 60);
+    EXPECT_NEAR(red["dry"] + red["flooded"], red["all"], 0.15 * red["all"])
+        << red["dry"] << " " << red["flooded"];
     expect_one_line("tarn render " + scene + " --layers nothing.gpkg -o " + (t / "x.png").string(),
                     1, "nothing.gpkg: no such file");
     std::ofstream(t / "far.geojson")
