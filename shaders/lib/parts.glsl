@@ -77,12 +77,34 @@ struct Part {
 // pixel_of — the picture's pixel that an invocation of the tile draws.
 ivec2 pixel_of(ViewBlock view, ivec2 local) { return local + view.tile.xy + (local >> 3) * view.walk.zw; }
 
+#ifdef TARN_PORT
+// A camera at the surface looks through the dome of a port, half of which may be under water: rays begin on it, each
+// in what is there. Such a picture is drawn twice, once for each medium.
+layout(binding = TARN_TEXTURE_PORT) uniform sampler2D port_heights;
+#endif
+
+// camera_part — part 0 of a pixel's path.
 Part camera_part(ViewBlock view, ivec2 pixel) {
     vec2 place = (vec2(pixel) + view.offset.xy) * view.inverse_size.zw;
     vec3 direction =
         pixel_direction(view.forward.xyz, view.right.xyz, view.up.xyz, vec2(view.right.w, view.up.w), place);
-    return Part(view.base.xy, view.camera.xyz, direction, 1.0, (view.counts.z & TARN_FLAG_UNDER_WATER) != 0u,
-                view.options.y, view.options.z > 0.5);
+    Part part = Part(view.base.xy, view.camera.xyz, direction, 1.0, (view.counts.z & TARN_FLAG_UNDER_WATER) != 0u,
+                     view.options.y, view.options.z > 0.5);
+#ifdef TARN_PORT
+    part.origin += view.ortho_lod.y * vec3(direction.x * view.base.z, -direction.y * view.base.z, direction.z);
+    vec2 at = 0.5 + 0.5 * vec2(direction.x, -direction.y);
+    part.in_water = part.origin.z < textureLod(port_heights, at, 0.0).r;
+#endif
+    return part;
+}
+
+// left_out — whether a pixel's ray begins in the other medium than the one being drawn.
+bool left_out(ViewBlock view, Part part) {
+#ifdef TARN_PORT
+    return part.in_water != ((view.counts.z & TARN_FLAG_UNDER_WATER) != 0u);
+#else
+    return false;
+#endif
 }
 
 // height_after, direction_after — of a part after t metres: in air, by how far level ground has fallen away below it

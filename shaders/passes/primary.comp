@@ -66,6 +66,8 @@ void main() {
     if (any(greaterThanEqual(local, view.tile.zw)))
         return;
     Part part = camera_part(view, pixel);
+    if (left_out(view, part))
+        return;
 #ifdef TARN_WAVES
     part.level -= view.offset.w; // as low as a trough may be
 #endif

@@ -26,6 +26,8 @@ void main() {
         return;
     int number = 1 + int(gl_GlobalInvocationID.z);
     Part first = camera_part(view, pixel_of(view, local));
+    if (left_out(view, first))
+        return;
 #ifdef TARN_WAVES
     WaveSurface met = unpack_surface(imageLoad(surfaces, local));
     Surface surface = Surface(slope_of_part(met, number, first.in_water, pixel_of(view, local), view.offset.z,

@@ -328,6 +328,8 @@ void main() {
         return;
     ivec2 pixel = pixel_of(view, local);
     Part first = camera_part(view, pixel);
+    if (left_out(view, first))
+        return;
     End first_end = unpack_end(imageLoad(hits[0], local));
     Sunlit sunlit = Sunlit(1.0, 1.0);
 #ifdef TARN_CAUSTICS

@@ -24,6 +24,8 @@ void main() {
         return;
     int number = int(gl_GlobalInvocationID.z);
     Part part = camera_part(view, pixel_of(view, local));
+    if (left_out(view, part))
+        return;
     uvec4 stored = imageLoad(hits[0], local);
     if (number > 0) {
         End first_end = unpack_end(stored);

@@ -98,6 +98,8 @@ float shaft_focus(Part part, float depth_m, float sink, float slant, float befor
 // The part that a slot is for, and where it ends. Returns whether there is one.
 bool part_of_slot(ivec2 local, int slot, out Part part, out End end, out float before_m, out float water_m) {
     part = camera_part(view, pixel_of(view, local));
+    if (left_out(view, part))
+        return false;
     end = unpack_end(imageLoad(hits[0], local));
     before_m = water_m = 0.0;
     bool from_water = part.in_water;

@@ -52,7 +52,7 @@ void main() {
 #ifdef TARN_IN_SLAB
     at_slab = at_slab || (part.in_water && part.bed_known);
 #endif
-    if (!at_slab)
+    if (!at_slab || left_out(view, part))
         return;
     float overlay_t = far_m;
     if ((view.counts.z & TARN_FLAG_OVERLAY) != 0u) {

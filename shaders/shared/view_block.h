@@ -28,11 +28,13 @@ using ivec4 = glm::ivec4;
 #define TARN_TEXTURE_WATER 12  // RGBA32F: what water does to light by colour (lib/medium.glsl)
 #define TARN_TEXTURE_LAND_SHADOW 14 // R32F: below this height [m above heights.x] land hides the sun
 #define TARN_TEXTURE_BEAMS 4   // R32F: free path of each tile of 8 x 8 pixels [m]
+#define TARN_TEXTURE_PORT 15 // R32F: height of the water around a camera at its surface: passes/port.comp
+#define TARN_PORT_SIDE 64    // texels
 #define TARN_TEXTURE_EXPOSED 16 // R8: share of bed that has fallen dry, a texel a node
 #define TARN_TEXTURE_DRAPE 17  // R8: nearness of draped lines over the ground (lib/markings.glsl)
 #define TARN_TEXTURE_PICTURE 20 // the picture so far: passes/display.comp, passes/meter.comp
 #define TARN_BUFFER_METER 1    // passes/meter.comp
-#define TARN_IMAGE_SCREEN 6    // rgba8: passes/display.comp; beams are written before a picture, this after it
+#define TARN_IMAGE_SCREEN 6    // rgba8: passes/display.comp; beams and port heights are written before a picture, this after it
 #define TARN_IMAGE_RADIANCE 0  // rgba32f
 #define TARN_IMAGE_DISTANCE 1  // r32f
 #define TARN_IMAGE_MAXIMA 2    // rg32f, written level of the maxima
@@ -69,7 +71,7 @@ struct ViewBlock {
     vec4 look;            // x: tree line [m], y: snow line [m], z: lake level [m] (all above z = 0),
                           // w: uniform ground albedo, < 0 = the colour scheme
     vec4 ortho;           // xy: grid position of its north-west corner, zw: nodes per picture side
-    vec4 ortho_lod;       // x: metres per pixel, yzw: -
+    vec4 ortho_lod;       // x: metres per pixel, y: radius of the camera's port [m], zw: -
     vec4 options;         // x: lift of shadow rays [m], y: level of the water the camera is in [m],
                           // z: 1 if that lake's bed is known, w: weight of this sample
     vec4 offset;          // xy: position inside the pixel, z: index of the sample, w: how far the walk's water is

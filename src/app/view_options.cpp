@@ -408,6 +408,10 @@ void add_view_options(CLI::App& c, ViewWords& w) {
     c.add_option("--curvature", w.curvature,
                  "the Earth's: on, off, or auto: where its drop could be more than a pixel")
         ->check(CLI::IsMember({"auto", "on", "off"}));
+    c.add_option(
+        "--port", w.settings.port_m,
+        "radius of the dome before the lens [m]: a camera at the surface sees above and below "
+        "the water at once");
     c.add_flag("--coarse-far-land", w.coarse_far_land,
                "take far land's blocks that are narrower than a pixel at their tops");
     c.add_flag("--no-mirrored-land", w.no_mirrored_land, "let the water mirror the sky alone");

@@ -104,6 +104,9 @@ public:
             waves_ && water
                 ? waves_->height_m({p.x, p.y}, *water - scene.ground.elevation_m(p.x, p.y))
                 : 0.0;
+        if (water && settings_.port_m > 0.0 &&
+            std::abs(p.z - *water) < settings_.port_m + (waves_ ? waves_->bound_m() : 0.0))
+            port_water_ = Lake{*water, scene.lake_at_level(*water).bed != Bed::unknown};
         if (water && p.z < *water + eta)
             camera_lake_ = Lake{*water, scene.lake_at_level(*water).bed != Bed::unknown};
     }
@@ -113,6 +116,17 @@ public:
     glm::dvec3 look(glm::dvec2 place, double& distance, Lot lot) const {
         const glm::dvec3 direction =
             pixel_direction(camera_.forward, camera_.right, camera_.up, half_tangent_, place);
+        if (port_water_) { // rays begin on a dome, each in what is there
+            const glm::dvec3 from = camera_.position + settings_.port_m * direction;
+            const double level = port_water_->level_m;
+            const double eta =
+                waves_ ? waves_->height_m({from.x, from.y},
+                                          level - scene_.ground.elevation_m(from.x, from.y))
+                       : 0.0;
+            return from.z < level + eta
+                       ? in_water(from, direction, *port_water_, 0.0, 0.0, &distance, lot)
+                       : in_air(from, direction, 0.0, &distance, lot);
+        }
         if (camera_lake_)
             return in_water(camera_.position, direction, *camera_lake_, 0.0, 0.0, &distance, lot);
         return in_air(camera_.position, direction, 0.0, &distance, lot);
@@ -625,7 +639,7 @@ private:
     double pixel_rad_ = 0.0;
     glm::dvec3 sun_below_{0, 0, 1}, sun_irradiance_below_{0.0};
     Photo photo_;
-    std::optional<Lake> camera_lake_;
+    std::optional<Lake> camera_lake_, port_water_;
     waves::Sea sea_;
     std::optional<WaveSurface> waves_;
     std::optional<SunTiles> tiles_; ///< of light that the waves focus

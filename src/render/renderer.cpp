@@ -194,8 +194,10 @@ std::string Renderer::air_defines() const {
     return std::string(hazy_ ? "#define TARN_HAZE 1\n" : "") +
            (whole_sky_ ? "#define TARN_WHOLE_SKY 1\n" : "") +
            (shadowed_ ? "#define TARN_LAND_SHADOW 1\n" : "") +
-           (mapped_ ? "#define TARN_MAP 1\n" : "") + curved_define();
+           (mapped_ ? "#define TARN_MAP 1\n" : "") + curved_define() + port_define();
 }
+
+std::string Renderer::port_define() const { return port_ ? "#define TARN_PORT 1\n" : ""; }
 
 // The walks of scenes that are small hold none of it.
 std::string Renderer::curved_define() const { return curved_ ? "#define TARN_CURVED 1\n" : ""; }
@@ -209,14 +211,14 @@ void Renderer::use_walk(scene::Walk walk, double setting) {
     walk_ = walk;
     const scene::WalkMethod& method = scene::walk_method(walk_);
     block_.bounds.z = float(setting > 0.0 ? setting : method.default_setting);
-    const auto key = std::pair(walk_, curved_define() + coarse_define());
+    const auto key = std::pair(walk_, curved_define() + coarse_define() + port_define());
     if (passes_.count(key))
         return;
     const std::string file = walk_file();
     const auto root = gpu::shader_root();
     // See lib/walks/cone_map.glsl.
     const std::string defined =
-        (rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "") + curved_define();
+        (rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "") + curved_define() + port_define();
     const auto pass = [&](const char* name, const std::string& more = {}) {
         return gpu::ComputeProgram(gpu::load_shader(
             root, text("passes/", name, ".comp"),
@@ -476,6 +478,10 @@ void Renderer::prepare(const scene::View& view) {
     block_.inverse_size.w = 1.0f / float(settings.height_px);
     block_.counts.z = flags;
     camera_m_ = p;
+    const auto water_here = scene_.water_level_m(p.x, p.y);
+    port_ = settings.port_m > 0.0 && water_here &&
+            std::abs(p.z - *water_here) < settings.port_m + lift_m_;
+    block_.ortho_lod.y = float(settings.port_m);
     locate_camera();
 
     if (sky_made_ != light.sky.radiance || sky_.width_px() != light.sky.azimuths) {
@@ -532,6 +538,8 @@ void Renderer::prepare(const scene::View& view) {
     prepare_land_shadow(view);
     use_shade();
     bounds_.prepare(walk_, false);
+    if (port_)
+        bounds_.prepare(walk_, true);
     bind_field(walk_, !under_water());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_LAKES, lakes_.id());
     sky_.bind(TARN_TEXTURE_SKY);
@@ -594,6 +602,39 @@ void Renderer::locate_camera() {
     // Rays that rise can enter a slab from its side, and leave it, from anywhere below its top.
     // On a curved Earth those that skim the horizon rise again.
     in_slab_ = wavy() && (under ? between : curved_ || p.z <= water_top_m_ + lift_m_);
+    if (port_) {
+        in_slab_ = wavy();
+        find_port_heights(*water);
+    }
+}
+
+// The water around a camera that is half in it.
+void Renderer::find_port_heights(double level_m) {
+    const float level = float(level_m - scene_.ground.offset_m);
+    block_.options.y = level;
+    block_.options.z = scene_.lake_at_level(level_m).bed != Bed::unknown ? 1.0f : 0.0f;
+    if (port_heights_.id() == 0)
+        port_heights_ = gpu::Texture2D(GL_R32F, TARN_PORT_SIDE, TARN_PORT_SIDE, 1,
+                                       gpu::Filter::linear, "water at the port");
+    if (wavy()) {
+        gpu::ComputeProgram& pass = port_passes_[waves_->defines()];
+        if (pass.id() == 0)
+            pass = gpu::ComputeProgram(
+                gpu::load_shader(gpu::shader_root(), "passes/port.comp", {}, waves_->defines()));
+        view_buffer_.write(&block_, sizeof block_);
+        heights_.bind(TARN_TEXTURE_HEIGHTS);
+        const Heightfield& ground = scene_.ground;
+        waves_->bind({ground.x_m(double(block_.base.x)), ground.y_m(double(block_.base.y))},
+                     lift_m_);
+        port_heights_.bind_image(TARN_IMAGE_BEAMS, GL_WRITE_ONLY);
+        pass.use();
+        glDispatchCompute(TARN_PORT_SIDE / 8, TARN_PORT_SIDE / 8, 1);
+        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    } else {
+        const std::vector<float> flat(TARN_PORT_SIDE * TARN_PORT_SIDE, level);
+        port_heights_.upload(GL_RED, GL_FLOAT, flat.data());
+    }
+    port_heights_.bind(TARN_TEXTURE_PORT);
 }
 
 void Renderer::set_sample(int sample, int samples) {
@@ -603,6 +644,19 @@ void Renderer::set_sample(int sample, int samples) {
 }
 
 void Renderer::draw_tile() {
+    if (!port_) {
+        draw_medium();
+        return;
+    }
+    const std::uint32_t flags = block_.counts.z;
+    for (const std::uint32_t under : {0u, std::uint32_t(TARN_FLAG_UNDER_WATER)}) {
+        block_.counts.z = (flags & ~static_cast<std::uint32_t>(TARN_FLAG_UNDER_WATER)) | under;
+        draw_medium();
+    }
+    block_.counts.z = flags;
+}
+
+void Renderer::draw_medium() {
     view_buffer_.write(&block_, sizeof block_);
     const GLuint across = groups(block_.tile.z), down = groups(block_.tile.w);
     constexpr GLbitfield images = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
@@ -653,6 +707,11 @@ void Renderer::draw_tile() {
 void Renderer::find_beams() {
     if (on_pass)
         on_pass("beams");
+    if (port_) { // rays do not begin where beams do
+        const float none = 0.0f;
+        glClearTexImage(beams_.id(), 0, GL_RED, GL_FLOAT, &none);
+        return;
+    }
     bind_walk(!under_water());
     walk_passes().beams.use();
     glDispatchCompute(GLuint((beams_.width_px() + 7) / 8), GLuint((beams_.height_px() + 3) / 4), 1);

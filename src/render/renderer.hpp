@@ -159,9 +159,10 @@ private:
     void use_shade();
     std::string air_defines() const;
     std::string curved_define() const;
+    std::string port_define() const;
     std::string coarse_define() const;
     const WalkPasses& walk_passes() const {
-        return passes_.at({walk_, curved_define() + coarse_define()});
+        return passes_.at({walk_, curved_define() + coarse_define() + port_define()});
     }
     std::string sunlight_defines() const;
     void upload_heights();
@@ -174,6 +175,8 @@ private:
     void upload_water(bool spectral);
     void bind_images();
     void locate_camera();
+    void find_port_heights(double level_m);
+    void draw_medium();
     bool under_water() const { return (block_.counts.z & TARN_FLAG_UNDER_WATER) != 0; }
     void lift_water(double lift_m);
     bool wavy() const { return waves_ && !waves_->sea().still(); }
@@ -192,7 +195,10 @@ private:
     std::map<std::string, gpu::ComputeProgram> shade_; ///< by air_defines()
     const gpu::ComputeProgram* calm_shade_ = nullptr;  ///< of them, for this picture
     std::vector<glm::vec3> sky_made_;                  ///< as it is on the GPU
-    bool hazy_ = false, whole_sky_ = false, mapped_ = false, curved_ = false, coarse_ = false;
+    bool hazy_ = false, whole_sky_ = false, mapped_ = false, curved_ = false, coarse_ = false,
+         port_ = false;
+    gpu::Texture2D port_heights_;
+    std::map<std::string, gpu::ComputeProgram> port_passes_; ///< by the waves' defines
     gpu::Texture2D exposed_, drape_;
     gpu::Texture2D land_shadow_;
     double shadow_softness_m_ = 1.0;

@@ -78,7 +78,9 @@ struct RenderSettings {
     int caustic_photons = 1; ///< of `splat`, on a side of a texel of the waves: 1, 2 or 4
     int shaft_steps = 2; ///< places along a view in the water where each of sixteen pixels side by
                          ///< side looks for shafts of light, [0, 256]; 0: none
-    double least_transmittance = 0.002;  ///< underwater paths end where less is left, [1e-6, .5]
+    double least_transmittance = 0.002; ///< underwater paths end where less is left, [1e-6, .5]
+    double port_m = 0.0; ///< radius of the dome before the lens where rays begin, [0, 2]: at the
+                         ///< water's surface a picture is half in, half out of it
     std::optional<bool> earth_curvature; ///< nothing: where it shows (scene/curvature.hpp)
     std::optional<double> ground_albedo; ///< lab: one grey for all ground, [0, 1]
     // What maps draw; nothing costs nothing. The reference leaves it out.
