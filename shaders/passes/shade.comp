@@ -120,6 +120,26 @@ vec3 marked(vec3 albedo, vec2 nodes, float z, bool in_water, float level, float 
 }
 #endif
 
+#ifdef TARN_LAMP
+// A diver's lamp, beside the lens and as wide as src/scene/settings.hpp says; what it lights is seen by part 0 alone.
+const float lamp_beside_m = 0.25, lamp_inner_cosine = 0.9659258, lamp_outer_cosine = 0.9063078; // 15 and 25 degrees
+
+float lamp_intensity(vec3 direction) {
+    return view.ortho_lod.z * smoothstep(lamp_outer_cosine, lamp_inner_cosine, dot(direction, normalize(view.forward.xyz)));
+}
+
+// What the water scatters back of it along the first metres of a view. With t = a tan(p) the fall by the squared
+// distance is even in p.
+vec3 lamp_scattered(vec3 direction, float length_m) {
+    const int looks = 8;
+    float most = atan(length_m / lamp_beside_m);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < looks; ++i)
+        sum += water_row(water, view.water, 2, 2.0 * lamp_beside_m * tan(most * (float(i) + 0.5) / float(looks)));
+    return lamp_intensity(direction) * most / (lamp_beside_m * float(looks)) * sum;
+}
+#endif
+
 // Radiance that leaves the ground where a part ended: land in the air, bed under water.
 //
 //   path_m   length of the way from the camera, for the footprint of a pixel
@@ -181,6 +201,11 @@ vec3 ground_radiance(Part part, End end, float path_m, float water_m, Sunlit sun
         irradiance += max(dot(normal, towards), 0.0) *
                       (part.in_water ? sun_irradiance_below(towards) * sunlight_left(depth / towards.z + water_m, sunlit)
                                      : view.sun_irradiance.rgb);
+#ifdef TARN_LAMP
+    if (part.in_water && path_m == end.t)
+        irradiance += lamp_intensity(part.direction) * max(-dot(normal, part.direction), 0.0) *
+                      transmittance(water, view.water, 2.0 * end.t) / (end.t * end.t + lamp_beside_m * lamp_beside_m);
+#endif
     if (part.in_water && on(TARN_FLAG_THROWN_BACK)) // what a bright bed gets back from the surface, again and again
         irradiance /= 1.0 - albedo * thrown_back(water, view.water, depth);
     return albedo * inverse_pi * irradiance;
@@ -248,6 +273,10 @@ vec3 part_radiance(Part part, End end, float before_m, float water_m, Sunlit sun
     vec3 radiance = vec3(0.0);
     if (part.in_water)
         radiance = scattered_radiance(part, 0.0, end.t, water_m, sunlit.way);
+#ifdef TARN_LAMP
+    if (part.in_water && before_m == 0.0)
+        radiance += lamp_scattered(part.direction, end.t);
+#endif
     if ((end.flags & end_ground) != 0u) {
         radiance += ground_radiance(part, end, before_m + end.t, water_m + end.t, sunlit);
 #ifdef TARN_HAZE

@@ -71,7 +71,8 @@ struct ViewBlock {
     vec4 look;            // x: tree line [m], y: snow line [m], z: lake level [m] (all above z = 0),
                           // w: uniform ground albedo, < 0 = the colour scheme
     vec4 ortho;           // xy: grid position of its north-west corner, zw: nodes per picture side
-    vec4 ortho_lod;       // x: metres per pixel, y: radius of the camera's port [m], zw: -
+    vec4 ortho_lod;       // x: metres per pixel, y: radius of the camera's port [m],
+                          // z: intensity of its lamp [irradiance at 1 m], w: -
     vec4 options;         // x: lift of shadow rays [m], y: level of the water the camera is in [m],
                           // z: 1 if that lake's bed is known, w: weight of this sample
     vec4 offset;          // xy: position inside the pixel, z: index of the sample, w: how far the walk's water is

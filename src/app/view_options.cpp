@@ -408,6 +408,8 @@ void add_view_options(CLI::App& c, ViewWords& w) {
     c.add_option("--curvature", w.curvature,
                  "the Earth's: on, off, or auto: where its drop could be more than a pixel")
         ->check(CLI::IsMember({"auto", "on", "off"}));
+    c.add_option("--dive-light", w.settings.dive_light_cd,
+                 "a diver's lamp by the lens, in candela; 0: none, 10000 is a strong one");
     c.add_option(
         "--port", w.settings.port_m,
         "radius of the dome before the lens [m]: a camera at the surface sees above and below "

@@ -493,8 +493,43 @@ private:
         return colour * irradiance / pi;
     }
 
+    /// Of the diver's lamp in a direction [irradiance at 1 m].
+    double lamp_intensity(glm::dvec3 direction) const {
+        const double outer = std::cos(25.0 * pi / 180.0), inner = std::cos(15.0 * pi / 180.0);
+        const double t = std::clamp((glm::dot(direction, glm::normalize(camera_.forward)) - outer) /
+                                        (inner - outer),
+                                    0.0, 1.0);
+        return settings_.dive_light_cd * scene::irradiance_per_lux * t * t * (3.0 - 2.0 * t);
+    }
+
+    glm::dvec3 lamp_on(const Hit& hit, glm::dvec3 direction, double t) const {
+        double slope = 0.0;
+        const double facing = std::max(-glm::dot(normal_at(hit, slope), direction), 0.0);
+        return lamp_intensity(direction) * facing /
+               (t * t + scene::lamp_beside_m * scene::lamp_beside_m) *
+               medium_.transmittance(2.0 * t);
+    }
+
+    /// By pieces that are thinner near the lamp: what a metre scatters back, by a path of none.
+    glm::dvec3 lamp_scattered(glm::dvec3 direction, double length) const {
+        const int pieces = 400;
+        glm::dvec3 sum(0.0);
+        if (lamp_intensity(direction) == 0.0)
+            return sum;
+        for (int k = 0; k < pieces; ++k) {
+            const double from = length * std::pow(double(k) / pieces, 3.0),
+                         to = length * std::pow((k + 1.0) / pieces, 3.0), t = 0.5 * (from + to);
+            // A level path at the surface: light of no slant, the way back before it.
+            sum += medium_.path_radiance(1.0, 0.0, 0.0, 2.0 * t - 0.5 * (to - from), to - from) /
+                   (t * t + scene::lamp_beside_m * scene::lamp_beside_m);
+        }
+        return lamp_intensity(direction) * sum;
+    }
+
     /// What is left of the bed's radiance after `water_m` of water.
-    glm::dvec3 bed(const Hit& hit, double level, double footprint, double water_m) const {
+    /// @param lamp  irradiance by the camera's lamp, as it is left at the eye
+    glm::dvec3 bed(const Hit& hit, double level, double footprint, double water_m,
+                   glm::dvec3 lamp) const {
         double slope = 0.0;
         const glm::dvec3 normal = normal_at(hit, slope);
         glm::dvec3 colour = albedo(hit, true, level, slope, footprint);
@@ -530,6 +565,7 @@ private:
                 irradiance += sun_irradiance_below_ * facing * left;
             }
         }
+        irradiance += lamp;
         if (settings_.thrown_back)
             irradiance /= 1.0 - colour * medium_.thrown_back(depth);
         return colour * irradiance / pi;
@@ -622,8 +658,12 @@ private:
             out += sun_irradiance_below_ *
                    sun_scattered(origin, direction, depth, water_before_m, length);
         const double water_m = water_before_m + length;
+        const bool lit = settings_.dive_light_cd > 0.0 && before_m == 0.0;
+        if (lit)
+            out += lamp_scattered(direction, length);
         if (hit)
-            return out + bed(*hit, lake.level_m, pixel_rad_ * (before_m + length), water_m);
+            return out + bed(*hit, lake.level_m, pixel_rad_ * (before_m + length), water_m,
+                             lit ? lamp_on(*hit, direction, length) : glm::dvec3(0.0));
         if (!at_surface || !lot)
             return out;
         glm::dvec3 top = origin + length * direction;

@@ -194,7 +194,8 @@ std::string Renderer::air_defines() const {
     return std::string(hazy_ ? "#define TARN_HAZE 1\n" : "") +
            (whole_sky_ ? "#define TARN_WHOLE_SKY 1\n" : "") +
            (shadowed_ ? "#define TARN_LAND_SHADOW 1\n" : "") +
-           (mapped_ ? "#define TARN_MAP 1\n" : "") + curved_define() + port_define();
+           (mapped_ ? "#define TARN_MAP 1\n" : "") + curved_define() + port_define() +
+           (lamp_ ? "#define TARN_LAMP 1\n" : "");
 }
 
 std::string Renderer::port_define() const { return port_ ? "#define TARN_PORT 1\n" : ""; }
@@ -482,6 +483,8 @@ void Renderer::prepare(const scene::View& view) {
     port_ = settings.port_m > 0.0 && water_here &&
             std::abs(p.z - *water_here) < settings.port_m + lift_m_;
     block_.ortho_lod.y = float(settings.port_m);
+    block_.ortho_lod.z = float(settings.dive_light_cd * scene::irradiance_per_lux);
+    lamp_ = settings.dive_light_cd > 0.0;
     locate_camera();
 
     if (sky_made_ != light.sky.radiance || sky_.width_px() != light.sky.azimuths) {

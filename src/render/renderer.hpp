@@ -196,7 +196,7 @@ private:
     const gpu::ComputeProgram* calm_shade_ = nullptr;  ///< of them, for this picture
     std::vector<glm::vec3> sky_made_;                  ///< as it is on the GPU
     bool hazy_ = false, whole_sky_ = false, mapped_ = false, curved_ = false, coarse_ = false,
-         port_ = false;
+         port_ = false, lamp_ = false;
     gpu::Texture2D port_heights_;
     std::map<std::string, gpu::ComputeProgram> port_passes_; ///< by the waves' defines
     gpu::Texture2D exposed_, drape_;

@@ -58,6 +58,12 @@ struct CausticsMethod {
 /// All methods, off first.
 const std::vector<CausticsMethod>& caustics_methods();
 
+/// Lighting's unit of irradiance a lux: the sun outside the atmosphere gives 133.3 klx (Stair &
+/// Ellis 1968: 133.1; ASTM E490 with the CIE observer 133.3) and has irradiance pi.
+inline constexpr double irradiance_per_lux = 3.14159265358979323846 / 133300.0;
+/// A lamp stands so far beside the lens.
+inline constexpr double lamp_beside_m = 0.25;
+
 /// Where draped lines show, by the water's level.
 enum class DrapeOn { all, dry, flooded };
 
@@ -79,6 +85,8 @@ struct RenderSettings {
     int shaft_steps = 2; ///< places along a view in the water where each of sixteen pixels side by
                          ///< side looks for shafts of light, [0, 256]; 0: none
     double least_transmittance = 0.002; ///< underwater paths end where less is left, [1e-6, .5]
+    double dive_light_cd = 0.0; ///< a diver's lamp by the lens, [0, 1e6] candela along the view in
+                                ///< a cone of 15 degrees that fades to nothing at 25; in water only
     double port_m = 0.0; ///< radius of the dome before the lens where rays begin, [0, 2]: at the
                          ///< water's surface a picture is half in, half out of it
     std::optional<bool> earth_curvature; ///< nothing: where it shows (scene/curvature.hpp)

@@ -228,6 +228,7 @@ bool clarity_panel(Session& session) {
         ImGui::EndCombo();
     }
     ImGui::TextDisabled("%s", session.scene.optics.name.c_str());
+    changed |= number_slider(session, "dive light", "dive-light", 0.0, 0.0f, 50000.0f, "%.0f cd");
     return changed;
 }
 

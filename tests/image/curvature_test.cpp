@@ -89,7 +89,7 @@ TEST(Curvature, HidesTheFootOfAFarRidge) {
     };
     // The slope itself is met where it stands above the line that touches the water.
     double hidden = 0.0;
-    for (double x = 45000.0; x < 24000.0; x += 1.0) {
+    for (double x = 45000.0; x < 48000.0; x += 1.0) {
         const double horizon = std::sqrt(eye_m / scene::bend_per_m);
         const double line = scene::bend_per_m * (x - horizon) * (x - horizon);
         if (ridge_top_m - 0.1 * (48000.0 - x) >= line) {

@@ -129,7 +129,7 @@ TEST(Driven, OpensOnAGoodView) {
             bright += c.r > 180 && c.g > 180 && c.b > 180;
         }
     EXPECT_GT(bright, 1500);
-    EXPECT_EQ(headers(shot).size(), 11u);
+    EXPECT_EQ(headers(shot).size(), 12u);
     desk.key("ctrl+q");
     EXPECT_EQ(desk.program().wait(20.0), 0) << desk.said();
     EXPECT_EQ(desk.count("closed"), 1);
@@ -183,7 +183,7 @@ TEST(Driven, TheLevelIsDraggedAndCounted) {
     pause(1.0);
     const Picture before = desk.screenshot();
     const std::vector<int> rows = headers(before);
-    ASSERT_EQ(rows.size(), 11u);
+    ASSERT_EQ(rows.size(), 12u);
     const int slider = rows[0] + 24;
     desk.xdo(text("mousemove 200 ", slider, " mousedown 1"));
     for (int x = 195; x > 120; x -= 15) {
@@ -408,7 +408,7 @@ TEST(Driven, AnotherSceneAndOneThatIsDeletedMeanwhile) {
     ASSERT_TRUE(desk.wait_for("level", 30.0));
     pause(1.0);
     std::vector<int> rows = headers(desk.screenshot());
-    ASSERT_EQ(rows.size(), 11u);
+    ASSERT_EQ(rows.size(), 12u);
     fs::remove_all(one); // while it is shown
     desk.hold("w", 1.0);
     EXPECT_TRUE(desk.program().alive());
