@@ -46,7 +46,7 @@ double choose_exposure(const std::string& words, const Image& picture, const sce
         return factor;
     }
     const scene::ExposureRange range = scene::exposure_range(scene, view);
-    return image::auto_exposure(picture, range.key, range.least, range.greatest);
+    return image::auto_exposure(picture, range.key, range.least, range.greatest, range.dark_share);
 }
 
 image::Metadata describe(const scene::Scene& scene, const scene::View& view,

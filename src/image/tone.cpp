@@ -29,7 +29,8 @@ double srgb_encode(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
-double auto_exposure(const Image& image, double key, double least, double greatest) {
+double auto_exposure(const Image& image, double key, double least, double greatest,
+                     double dark_share) {
     std::vector<float> values;
     values.reserve(image.radiance.size());
     for (const glm::vec3& c : image.radiance)
@@ -38,8 +39,10 @@ double auto_exposure(const Image& image, double key, double least, double greate
     if (values.empty())
         return 1.0;
     std::sort(values.begin(), values.end());
-    const std::size_t from = values.size() * 2 / 100;
+    std::size_t from = values.size() * 2 / 100;
     const std::size_t to = std::max(from + 1, values.size() * 98 / 100);
+    while (from + 1 < to && double(values[from]) < dark_share * double(values[to - 1]))
+        ++from;
     double sum = 0.0;
     for (std::size_t i = from; i < to; ++i)
         sum += std::log(std::max(double(values[i]), 1e-6));

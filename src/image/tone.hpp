@@ -6,7 +6,8 @@ namespace tarn::image {
 
 /// Exposure that suits a picture: the middle of its brightness (the logarithmic mean of luminances
 /// between the 2nd and the 98th percentile) becomes `key` of white, within [least, greatest].
-double auto_exposure(const Image& image, double key, double least, double greatest);
+double auto_exposure(const Image& image, double key, double least, double greatest,
+                     double dark_share = 0.0);
 
 /// A colour outside sRGB, as deep water may have, moved towards the grey of its luminance until no
 /// channel is negative; others are left as they are.

@@ -8,10 +8,12 @@ namespace tarn::scene {
 struct ExposureRange {
     double key = 0.25; ///< share of white that the middle of the brightness becomes
     double least = 1.0, greatest = 1.0; ///< factors on radiance
+    double dark_share = 0.0; ///< what is darker than this share of the bright does not count
 };
 
 /// Bright enough for land in the given light; under water the picture itself decides, up to four
-/// hundred times what land takes.
+/// hundred times what land takes. By a diver's lamp what it lights decides: the night beside it
+/// does not count.
 ExposureRange exposure_range(const Scene& scene, const View& view);
 
 } // namespace tarn::scene

@@ -113,7 +113,8 @@ void Screen::meter(const scene::Scene& scene, const scene::View& view, double sh
     for (const glm::vec3& radiance : display_.meter(renderer_.radiance()))
         small.radiance.push_back(radiance * float(share));
     const scene::ExposureRange range = scene::exposure_range(scene, view);
-    wanted_exposure_ = image::auto_exposure(small, range.key, range.least, range.greatest);
+    wanted_exposure_ =
+        image::auto_exposure(small, range.key, range.least, range.greatest, range.dark_share);
     // The eye takes its time: half a second for a factor of e.
     const double left = std::exp(-seconds / 0.5);
     const double ratio = std::log(wanted_exposure_ / exposure_);

@@ -96,6 +96,11 @@ TEST(Tone, ColoursOutsideTheGamutKeepTheirLuminance) {
 TEST(Tone, AutomaticExposureBringsTheMiddleToTheKey) {
     EXPECT_NEAR(auto_exposure(flat(50, 50, 0.02f), 0.2, 0.0, 1e9), 10.0, 1e-3);
     EXPECT_NEAR(auto_exposure(flat(50, 50, 0.02f), 0.2, 0.0, 4.0), 4.0, 1e-9);
+    Image lamp = flat(50, 50, 0.0f); // a lit quarter in the night
+    for (int y = 0; y < 25; ++y)
+        for (int x = 0; x < 25; ++x)
+            lamp.radiance[std::size_t(y * 50 + x)] = glm::vec3(0.02f);
+    EXPECT_NEAR(auto_exposure(lamp, 0.2, 0.0, 1e9, 0.02), 10.0, 1e-3);
 }
 
 TEST(Files, ExrKeepsEveryBitAndItsDistances) {
