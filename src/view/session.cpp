@@ -91,11 +91,11 @@ void Session::take_plan(const Planned& plan) {
         before[name] = known != before_plan_.end() ? known->second : option(name);
         changes[name] = value;
     }
+    planned_for = flight.pose(); // whatever comes of it: not again from here
     if (!set(changes))
         return;
     before_plan_ = std::move(before);
     reasons = plan.reasons;
-    planned_for = flight.pose();
     if (!plan.kept)
         say("nothing keeps that budget; this comes nearest");
 }

@@ -123,6 +123,8 @@ private:
     double started_s_, logged_level_m_ = NAN;
     bool shown_once_ = false;
     double last_s_ = 0.0, moved_s_ = -1e9, level_s_ = -1e9;
+    std::optional<Pose> pose_; ///< of the last frame, and since when
+    double pose_s_ = 0.0;
     bool save_asked_ = false;
     bool changed_ = true, moving_ = false, was_moving_ = false;
     std::optional<glm::dvec3> pivot_;
@@ -566,8 +568,12 @@ void App::frame() {
     was_moving_ = moving_;
     if (std::exchange(save_asked_, false)) // between two frames
         save_picture();
-    const bool rests = session_.plan_at_rest && shown_once_ && !moving_ && now - moved_s_ > 1.0 &&
-                       now - level_s_ > 1.0 && session_.planned_for != session_.flight.pose();
+    if (pose_ != session_.flight.pose()) { // the camera's rest: water may go on moving
+        pose_ = session_.flight.pose();
+        pose_s_ = now;
+    }
+    const bool rests = session_.plan_at_rest && shown_once_ && now - pose_s_ > 1.0 &&
+                       now - level_s_ > 1.0 && session_.planned_for != pose_;
     if (asked.plan || rests)
         plan(width, height);
     frames_ += 1.0;
