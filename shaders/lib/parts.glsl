@@ -91,7 +91,7 @@ Part camera_part(ViewBlock view, ivec2 pixel) {
     Part part = Part(view.base.xy, view.camera.xyz, direction, 1.0, (view.counts.z & TARN_FLAG_UNDER_WATER) != 0u,
                      view.options.y, view.options.z > 0.5);
 #ifdef TARN_PORT
-    part.origin += view.ortho_lod.y * vec3(direction.x * view.base.z, -direction.y * view.base.z, direction.z);
+    part.origin += view.diver.x * vec3(direction.x * view.base.z, -direction.y * view.base.z, direction.z);
     vec2 at = 0.5 + 0.5 * vec2(direction.x, -direction.y);
     part.in_water = part.origin.z < textureLod(port_heights, at, 0.0).r;
 #endif

@@ -17,7 +17,7 @@ layout(binding = TARN_IMAGE_BEAMS, r32f) uniform writeonly image2D port_heights;
 void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
     vec2 across = (vec2(texel) + 0.5) / float(TARN_PORT_SIDE) * 2.0 - 1.0;
-    vec2 nodes = view.camera.xy + across * view.ortho_lod.y * view.base.z; // from view.base
+    vec2 nodes = view.camera.xy + across * view.diver.x * view.base.z; // from view.base
     vec2 cell = clamp(floor(nodes + view.base.xy), vec2(0.0), view.grid.xy - 2.0);
     vec4 ground = textureGather(heights, (cell + 1.0) * view.inverse_size.xy, 0) * view.heights.y;
     float depth = view.options.y - bilinear(ground, clamp(nodes + view.base.xy - cell, 0.0, 1.0));

@@ -121,22 +121,23 @@ vec3 marked(vec3 albedo, vec2 nodes, float z, bool in_water, float level, float 
 #endif
 
 #ifdef TARN_LAMP
-// A diver's lamp, beside the lens and as wide as src/scene/settings.hpp says; what it lights is seen by part 0 alone.
-const float lamp_beside_m = 0.25, lamp_inner_cosine = 0.9659258, lamp_outer_cosine = 0.9063078; // 15 and 25 degrees
+// A diver's lamp, beside the lens; what it lights is seen by part 0 alone. Even to 15 degrees from the middle of the
+// view, gone at 25.
+const float lamp_inner_cosine = 0.9659258, lamp_outer_cosine = 0.9063078;
 
 float lamp_intensity(vec3 direction) {
-    return view.ortho_lod.z * smoothstep(lamp_outer_cosine, lamp_inner_cosine, dot(direction, normalize(view.forward.xyz)));
+    return view.diver.y * smoothstep(lamp_outer_cosine, lamp_inner_cosine, dot(direction, view.forward.xyz));
 }
 
 // What the water scatters back of it along the first metres of a view. With t = a tan(p) the fall by the squared
 // distance is even in p.
 vec3 lamp_scattered(vec3 direction, float length_m) {
     const int looks = 8;
-    float most = atan(length_m / lamp_beside_m);
+    float beside = view.diver.z, most = atan(length_m / beside);
     vec3 sum = vec3(0.0);
     for (int i = 0; i < looks; ++i)
-        sum += water_row(water, view.water, 2, 2.0 * lamp_beside_m * tan(most * (float(i) + 0.5) / float(looks)));
-    return lamp_intensity(direction) * most / (lamp_beside_m * float(looks)) * sum;
+        sum += water_row(water, view.water, 2, 2.0 * beside * tan(most * (float(i) + 0.5) / float(looks)));
+    return lamp_intensity(direction) * most / (beside * float(looks)) * sum;
 }
 #endif
 
@@ -204,7 +205,7 @@ vec3 ground_radiance(Part part, End end, float path_m, float water_m, Sunlit sun
 #ifdef TARN_LAMP
     if (part.in_water && path_m == end.t)
         irradiance += lamp_intensity(part.direction) * max(-dot(normal, part.direction), 0.0) *
-                      transmittance(water, view.water, 2.0 * end.t) / (end.t * end.t + lamp_beside_m * lamp_beside_m);
+                      transmittance(water, view.water, 2.0 * end.t) / (end.t * end.t + view.diver.z * view.diver.z);
 #endif
     if (part.in_water && on(TARN_FLAG_THROWN_BACK)) // what a bright bed gets back from the surface, again and again
         irradiance /= 1.0 - albedo * thrown_back(water, view.water, depth);

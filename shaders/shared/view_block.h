@@ -71,8 +71,9 @@ struct ViewBlock {
     vec4 look;            // x: tree line [m], y: snow line [m], z: lake level [m] (all above z = 0),
                           // w: uniform ground albedo, < 0 = the colour scheme
     vec4 ortho;           // xy: grid position of its north-west corner, zw: nodes per picture side
-    vec4 ortho_lod;       // x: metres per pixel, y: radius of the camera's port [m],
-                          // z: intensity of its lamp [irradiance at 1 m], w: -
+    vec4 ortho_lod;       // x: metres per pixel, yzw: -
+    vec4 diver;           // of the camera: x: radius of its port [m]; its lamp's y: intensity along the view
+                          // [irradiance at 1 m], z: distance from the lens [m], w: -
     vec4 options;         // x: lift of shadow rays [m], y: level of the water the camera is in [m],
                           // z: 1 if that lake's bed is known, w: weight of this sample
     vec4 offset;          // xy: position inside the pixel, z: index of the sample, w: how far the walk's water is
@@ -99,6 +100,6 @@ struct ViewBlock {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewBlock) == 448 && offsetof(ViewBlock, walk) == 432, "std140 layout");
+static_assert(sizeof(ViewBlock) == 464 && offsetof(ViewBlock, walk) == 448, "std140 layout");
 } // namespace tarn::shared
 #endif

@@ -223,10 +223,6 @@ std::string file_word(std::string words) {
     return words;
 }
 
-} // namespace
-
-namespace {
-
 /// Curves of the time of best and default pictures, median over views, against what `x_of` says of
 /// a result; those with one point alone are left out.
 /// @param curve_of  what a curve holds besides

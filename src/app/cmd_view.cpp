@@ -161,10 +161,16 @@ view::Services services_for(const std::string& folder, const scene::Scene& as_im
              .more = {}});
         return path;
     };
-    out.plan = [](render::Renderer& renderer, const scene::Scene& scene, const scene::View& view,
-                  double max_error, const Progress& progress) {
+    if (!words.plan.budget.max_error)
+        out.frame_time_ms = words.plan.budget.frame_time_ms;
+    out.plan = [time_ms = out.frame_time_ms](render::Renderer& renderer, const scene::Scene& scene,
+                                             const scene::View& view, double max_error,
+                                             const Progress& progress) {
         render::Budget budget;
-        budget.max_error = max_error;
+        if (time_ms)
+            budget.frame_time_ms = time_ms;
+        else
+            budget.max_error = max_error;
         return planned_of(render::make_plan(renderer, scene, view, budget, progress));
     };
     out.read_layer = [frame = as_imported.frame](const std::string& path) {

@@ -2,6 +2,7 @@
 
 #include "app/command.hpp"
 #include "app/console.hpp"
+#include "core/checksum.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
 #include "geo/frame.hpp"
@@ -140,11 +141,10 @@ scene_files::OptionList with_option(scene_files::OptionList options, const std::
 }
 
 std::string short_sum(const std::string& text) {
-    std::uint64_t sum = 14695981039346656037ull; // FNV-1a
-    for (const char c : text)
-        sum = (sum ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+    Checksum sum;
+    sum.add(text.data(), text.size());
     std::ostringstream out;
-    out << TARN_VERSION << "-" << std::hex << sum;
+    out << TARN_VERSION << "-" << std::hex << sum.value();
     return out.str();
 }
 

@@ -3,7 +3,6 @@
 #include "core/text.hpp"
 #include "render/renderer.hpp"
 
-#include <chrono>
 #include <glm/geometric.hpp>
 #include <ostream>
 
@@ -77,12 +76,6 @@ std::vector<SeedRow> measure_seed_table(const scene::Scene& scene, double wind_m
                 renderer.move_waves(time_s += 1.0 / 60.0);
                 renderer.draw_once();
             };
-            // A GPU that was idle while programs were made takes a while to come to speed.
-            const auto begin = std::chrono::steady_clock::now();
-            do {
-                frame();
-                glFinish();
-            } while (std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(200));
             row.times.push_back(time_on_gpu(frame, runs));
         }
         rows.push_back(std::move(row));

@@ -6,6 +6,7 @@ namespace tarn::image {
 
 /// Exposure that suits a picture: the middle of its brightness (the logarithmic mean of luminances
 /// between the 2nd and the 98th percentile) becomes `key` of white, within [least, greatest].
+/// @param dark_share  what is darker than this share of the 98th percentile does not count
 double auto_exposure(const Image& image, double key, double least, double greatest,
                      double dark_share = 0.0);
 

@@ -1,5 +1,7 @@
 #include "reference/caustics.hpp"
 
+#include "core/checksum.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -7,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <random>
+#include <sstream>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -258,6 +261,56 @@ double SunTiles::focus(glm::dvec2 at_m, double depth_m, const std::vector<double
         variance += c.lean_variance * amplitude[j] * amplitude[j];
     }
     return product;
+}
+
+namespace {
+
+/// Everything that sunlight below waves depends on, in a string.
+std::string mark_of(const waves::Sea& sea, double time_s, const PhotonLight& light,
+                    double deepest_m) {
+    Checksum sum;
+    const auto add = [&sum](const auto& values) {
+        sum.add(values.data(), values.size() * sizeof values[0]);
+    };
+    std::ostringstream out;
+    out.precision(17);
+    const auto word = [&out](double v) { out << v << ' '; };
+    for (const double v :
+         {time_s, deepest_m, light.sun.x, light.sun.y, light.sun.z, light.index, light.disc_rad,
+          light.schlick ? 1.0 : 0.0, double(light.photons_a_side), double(light.seed),
+          light.steepest, sea.full_depth_m, sea.bound_m, sea.roughness.xx, sea.roughness.xy,
+          sea.roughness.yy, sea.settings.loop_s})
+        word(v);
+    for (const waves::Cascade& c : sea.cascades) {
+        for (const double v :
+             {c.patch_m, double(c.texels), c.choppiness, double(c.ripples), double(c.window),
+              c.corner_m.x, c.corner_m.y, c.bound_m, c.moments.slope_along, c.moments.slope_across})
+            word(v);
+        add(c.mask);
+        add(c.h0);
+        add(c.turns);
+    }
+    for (const waves::SineWave& w : sea.sines)
+        for (const double v : {w.k_per_m.x, w.k_per_m.y, w.amplitude_m, w.omega_per_s, w.phase_rad})
+            word(v);
+    out << sum.value();
+    return out.str();
+}
+
+} // namespace
+
+std::shared_ptr<const SunTiles> shared_sun_tiles(const waves::Sea& sea, double time_s,
+                                                 const PhotonLight& light, double deepest_m) {
+    static std::mutex guard;
+    static std::string known;
+    static std::shared_ptr<const SunTiles> kept;
+    const std::scoped_lock lock(guard);
+    const std::string mark = mark_of(sea, time_s, light, deepest_m);
+    if (mark != known) {
+        kept = std::make_shared<const SunTiles>(sea, time_s, light, deepest_m);
+        known = mark;
+    }
+    return kept;
 }
 
 } // namespace tarn::reference

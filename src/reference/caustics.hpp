@@ -7,6 +7,7 @@
 #include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <vector>
 
 namespace tarn::reference {
@@ -91,5 +92,10 @@ private:
     std::size_t finest_ = 0;
     std::vector<Cascade> cascades_;
 };
+
+/// The same, kept for the next who asks: views of one moment share their sunlight, and its photons
+/// take most of a small picture's time. One set is kept; any thread may ask.
+std::shared_ptr<const SunTiles> shared_sun_tiles(const waves::Sea& sea, double time_s,
+                                                 const PhotonLight& light, double deepest_m);
 
 } // namespace tarn::reference

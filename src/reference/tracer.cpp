@@ -18,9 +18,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <random>
-#include <sstream>
 #include <tbb/parallel_for.h>
 
 namespace tarn::reference {
@@ -55,56 +53,6 @@ Lot lot_of(int x, int y, int sample) {
     v = (v ^ (v >> 31)) * 0x7fb5d329728ea185ull;
     v = (v ^ (v >> 27)) * 0x81dadef4bc2dd44dull;
     return v ^ (v >> 33);
-}
-
-/// Everything that sunlight below waves depends on, in a string.
-std::string mark_of(const waves::Sea& sea, double time_s, const PhotonLight& light,
-                    double deepest_m) {
-    std::uint64_t sum = 14695981039346656037ull; // FNV-1a
-    const auto add = [&sum](const auto& values) {
-        const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
-        for (std::size_t i = 0; i < values.size() * sizeof values[0]; ++i)
-            sum = (sum ^ bytes[i]) * 1099511628211ull;
-    };
-    std::ostringstream out;
-    out.precision(17);
-    const auto word = [&out](double v) { out << v << ' '; };
-    for (const double v :
-         {time_s, deepest_m, light.sun.x, light.sun.y, light.sun.z, light.index, light.disc_rad,
-          light.schlick ? 1.0 : 0.0, double(light.photons_a_side), double(light.seed),
-          light.steepest, sea.full_depth_m, sea.bound_m, sea.roughness.xx, sea.roughness.xy,
-          sea.roughness.yy, sea.settings.loop_s})
-        word(v);
-    for (const waves::Cascade& c : sea.cascades) {
-        for (const double v :
-             {c.patch_m, double(c.texels), c.choppiness, double(c.ripples), double(c.window),
-              c.corner_m.x, c.corner_m.y, c.bound_m, c.moments.slope_along, c.moments.slope_across})
-            word(v);
-        add(c.mask);
-        add(c.h0);
-        add(c.turns);
-    }
-    for (const waves::SineWave& w : sea.sines)
-        for (const double v : {w.k_per_m.x, w.k_per_m.y, w.amplitude_m, w.omega_per_s, w.phase_rad})
-            word(v);
-    out << sum;
-    return out.str();
-}
-
-/// Views of one moment share their sunlight: its photons take most of a small picture's time, so
-/// the last one is kept.
-std::shared_ptr<const SunTiles> sun_tiles(const waves::Sea& sea, double time_s,
-                                          const PhotonLight& light, double deepest_m) {
-    static std::mutex guard;
-    static std::string known;
-    static std::shared_ptr<const SunTiles> kept;
-    const std::scoped_lock lock(guard);
-    const std::string mark = mark_of(sea, time_s, light, deepest_m);
-    if (mark != known) {
-        kept = std::make_shared<const SunTiles>(sea, time_s, light, deepest_m);
-        known = mark;
-    }
-    return kept;
 }
 
 class Tracer {
@@ -142,7 +90,7 @@ public:
                 raised_.offset_m += waves_->bound_m();
                 const bool bent = settings_.caustics != scene::Caustics::off && sun.z > 0.0;
                 if (bent && !sea_.cascades.empty())
-                    tiles_ = sun_tiles(
+                    tiles_ = shared_sun_tiles(
                         sea_, view.waves.time_s,
                         PhotonLight{.sun = sun,
                                     .index = index_,
@@ -496,9 +444,8 @@ private:
     /// Of the diver's lamp in a direction [irradiance at 1 m].
     double lamp_intensity(glm::dvec3 direction) const {
         const double outer = std::cos(25.0 * pi / 180.0), inner = std::cos(15.0 * pi / 180.0);
-        const double t = std::clamp((glm::dot(direction, glm::normalize(camera_.forward)) - outer) /
-                                        (inner - outer),
-                                    0.0, 1.0);
+        const double t =
+            std::clamp((glm::dot(direction, camera_.forward) - outer) / (inner - outer), 0.0, 1.0);
         return settings_.dive_light_cd * scene::irradiance_per_lux * t * t * (3.0 - 2.0 * t);
     }
 

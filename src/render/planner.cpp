@@ -146,9 +146,8 @@ private:
             add("curvature", {{"off", falls + "as little of it is seen",
                                [](View& v) { v.settings.earth_curvature = false; }}});
         if (s.walk == scene::Walk::cone_map && !s.coarse_far_land) {
-            const double pixel_rad =
-                scene::bend_per_m * drop.distance_m / std::max(drop.pixels, 1e-12);
-            const double from_m = 2.0 * scene_.ground.spacing_m / pixel_rad; // a block of two cells
+            const double from_m = 2.0 * scene_.ground.spacing_m / // a block of two cells
+                                  scene::pixel_rad(everything_.camera, s.height_px);
             if (from_m < drop.distance_m)
                 add("far land", {{"coarse",
                                   text("from ", fixed(1e-3 * from_m, 1),

@@ -1,11 +1,8 @@
 #include "render/renderer.hpp"
 
 #include "core/error.hpp"
-#include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "scene/curvature.hpp"
-#include "scene/land_shadow.hpp"
-#include "scene/water_colour.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,157 +28,13 @@ Renderer::Renderer(const scene::Scene& scene, std::optional<bool> rays_in_step)
     glBindBufferBase(GL_UNIFORM_BUFFER, TARN_BLOCK_VIEW, view_buffer_.id());
 }
 
-void Renderer::upload_heights() {
-    const Heightfield& ground = scene_.ground;
-    const Heightfield& water = scene_.water;
-    const GridSize size = ground.size();
-    if (heights_.width_px() != size.cols || heights_.height_px() != size.rows)
-        heights_ =
-            gpu::Texture2D(GL_RG16, size.cols, size.rows, 1, gpu::Filter::nearest, "height field");
-    packed_.resize(2 * size.count());
-    struct Extremes {
-        double water_top = -1e6, deepest = 0.0; // no water: below everything
-        std::uint16_t low = 65535, high = 0;
-    };
-    std::vector<Extremes> rows(std::size_t(size.rows));
-    share_out(size.rows, 0, [&](int first, int last) {
-        for (int row = first; row < last; ++row) {
-            Extremes e;
-            std::size_t i = ground.codes.index({0, row});
-            for (int col = 0; col < size.cols; ++col, ++i) {
-                const std::uint16_t z = ground.codes.values[i], code = water.codes.values[i];
-                packed_[2 * i] = z;
-                packed_[2 * i + 1] = code;
-                e.low = std::min(e.low, z);
-                e.high = std::max(e.high, z);
-                if (code != no_water_code) {
-                    const double level = water.offset_m + water.scale_m * code;
-                    e.water_top = std::max(e.water_top, level);
-                    e.deepest = std::max(e.deepest, level - ground.offset_m - ground.scale_m * z);
-                }
-            }
-            rows[std::size_t(row)] = e;
-        }
-    });
-    Extremes all;
-    for (const Extremes& e : rows)
-        all = {std::max(all.water_top, e.water_top), std::max(all.deepest, e.deepest),
-               std::min(all.low, e.low), std::max(all.high, e.high)};
-    water_top_m_ = all.water_top;
-    deepest_m_ = all.deepest;
-    heights_.upload(GL_RG, GL_UNSIGNED_SHORT, packed_.data());
-    heights_bytes_ = packed_.size() * sizeof packed_[0];
-
-    // Heights on the GPU count from the ground's offset: float32 then resolves a fraction of a
-    // code even for relief at some kilometres of altitude.
-    block_.heights = {float(ground.offset_m), float(ground.scale_m * 65535.0),
-                      float(water.offset_m - ground.offset_m), float(water.scale_m * 65535.0)};
-    double top = ground.offset_m + ground.scale_m * all.high;
-    std::vector<glm::vec4> lakes;
-    for (const LakeRecord& lake : scene_.lakes) {
-        top = std::max(top, lake.level_m);
-        lakes.emplace_back(float(lake.level_m - ground.offset_m), lake.bed != Bed::unknown, 0, 0);
-    }
-    std::sort(lakes.begin(), lakes.end(),
-              [](const glm::vec4& a, const glm::vec4& b) { return a.x < b.x; });
-    lakes_ = gpu::Buffer(lakes.size() * sizeof lakes[0], lakes.data());
-    block_.counts.w = static_cast<std::uint32_t>(lakes.size());
-    top_m_ = top - ground.offset_m;
-    block_.slab = {float(ground.scale_m * all.low) / block_.heights.y, 0.0f, 0.0f, 0.0f};
-}
-
-// What is exposed or draped; one texel stands for nothing.
-void Renderer::upload_map() {
-    const GridSize size = scene_.ground.size();
-    if (scene_.exposed_bed) {
-        if (exposed_.width_px() != size.cols || exposed_.height_px() != size.rows)
-            exposed_ =
-                gpu::Texture2D(GL_R8, size.cols, size.rows, 1, gpu::Filter::linear, "exposed bed");
-        exposed_.upload(GL_RED, GL_UNSIGNED_BYTE, scene_.exposed_bed->share.values.data());
-        block_.exposed = {float(scene_.exposed_bed->level_m - scene_.ground.offset_m), 1.0f, 0.0f,
-                          0.0f};
-    } else {
-        block_.exposed = {0, 0, 0, 0};
-    }
-    if (scene_.drape) {
-        const scene::Drape& d = *scene_.drape;
-        if (drape_.width_px() != d.cols || drape_.height_px() != d.rows)
-            drape_ = gpu::Texture2D(GL_R8, d.cols, d.rows, 1, gpu::Filter::linear, "drape");
-        drape_.upload(GL_RED, GL_UNSIGNED_BYTE, d.nearness.data());
-        const double s = scene_.ground.spacing_m;
-        block_.drape = {float((d.west_m - scene_.ground.west_m) / s),
-                        float((scene_.ground.north_m - d.north_m) / s), float(d.texel_m / s),
-                        float(d.reach_m)};
-    } else {
-        block_.drape = {0, 0, 0, 0};
-    }
-    for (gpu::Texture2D* texture : {&exposed_, &drape_})
-        if (texture->id() == 0)
-            *texture = gpu::Texture2D(GL_R8, 1, 1, 1, gpu::Filter::linear, "no map");
-}
-
-void Renderer::scene_changed(bool settled) {
-    upload_heights();
-    upload_map();
-    bounds_.scene_changed();
-    if (settled) {
-        packed_ = {}; // kept while somebody drags: fresh memory takes as long as the copy
-        shadow_sun_.reset();
-        if (waves_)
-            waves_->set(
-                waves::make_sea(scene_.ground, scene_.water, scene_.lakes, waves_->sea().settings));
-        wave_time_s_.reset();
-        sunlight_settings_.reset();
-    }
-    lift_water(lift_m_);
-    gpu::check_gl("uploading the scene");
-}
-
-void Renderer::give_cone_maps(const ConeMap& ground, const ConeMap& surface) {
-    bounds_.give_cones(ground, surface);
-}
-
-void Renderer::upload_scene() {
-    const Heightfield& ground = scene_.ground;
-    const GridSize size = ground.size();
-    upload_heights();
-    packed_ = {};
-    upload_map();
-    block_.walk = {FieldBounds::root_level(size), FieldBounds::cone_shift, 0, 0};
-    block_.grid = {float(size.cols), float(size.rows), float(ground.spacing_m), 0.0f};
-    block_.forward.w = float(scene::block_bottom_m(ground) - ground.offset_m);
-
-    const float per_m = 1.0f / block_.heights.y;
-    block_.base.z = float(1.0 / ground.spacing_m);
-    block_.inverse_size = {1.0f / float(size.cols), 1.0f / float(size.rows), 1.0f, 1.0f};
-    block_.bounds.w = block_.forward.w * per_m;
-    lift_water(0.0);
-
-    if (scene_.ortho) {
-        const Ortho& o = *scene_.ortho;
-        const int levels = 1 + int(std::log2(std::max(o.picture.width_px, o.picture.height_px)));
-        ortho_ = gpu::Texture2D(GL_SRGB8_ALPHA8, o.picture.width_px, o.picture.height_px, levels,
-                                gpu::Filter::trilinear, "orthophoto");
-        ortho_.upload(GL_RGBA, GL_UNSIGNED_BYTE, o.picture.bytes.data());
-        glGenerateTextureMipmap(ortho_.id());
-        const double s = ground.spacing_m;
-        block_.ortho = {float((o.west_m - ground.west_m) / s),
-                        float((ground.north_m - o.north_m) / s),
-                        float(o.picture.width_px * o.spacing_m / s),
-                        float(o.picture.height_px * o.spacing_m / s)};
-        block_.ortho_lod.x = float(o.spacing_m);
-    } else {
-        ortho_ = gpu::Texture2D(GL_RGBA8, 1, 1, 1, gpu::Filter::linear, "no orthophoto");
-    }
-    gpu::check_gl("uploading the scene");
-}
-
 // A picture without haze runs a program that holds none of it.
 void Renderer::use_shade() {
-    gpu::ComputeProgram& shade = shade_[air_defines()];
+    const std::string defined = path_defines() + shade_defines();
+    gpu::ComputeProgram& shade = shade_[defined];
     if (shade.id() == 0)
         shade = gpu::ComputeProgram(
-            gpu::load_shader(gpu::shader_root(), "passes/shade.comp", {}, air_defines()));
+            gpu::load_shader(gpu::shader_root(), "passes/shade.comp", {}, defined));
     calm_shade_ = &shade;
 }
 
@@ -190,44 +43,49 @@ std::string Renderer::sunlight_defines() const {
                      : std::string();
 }
 
-std::string Renderer::air_defines() const {
+std::string Renderer::shade_defines() const {
     return std::string(hazy_ ? "#define TARN_HAZE 1\n" : "") +
            (whole_sky_ ? "#define TARN_WHOLE_SKY 1\n" : "") +
            (shadowed_ ? "#define TARN_LAND_SHADOW 1\n" : "") +
-           (mapped_ ? "#define TARN_MAP 1\n" : "") + curved_define() + port_define() +
-           (lamp_ ? "#define TARN_LAMP 1\n" : "");
+           (mapped_ ? "#define TARN_MAP 1\n" : "") + (lamp_ ? "#define TARN_LAMP 1\n" : "");
 }
 
-std::string Renderer::port_define() const { return port_ ? "#define TARN_PORT 1\n" : ""; }
-
-// The walks of scenes that are small hold none of it.
-std::string Renderer::curved_define() const { return curved_ ? "#define TARN_CURVED 1\n" : ""; }
+// What every pass that follows a path must know: scenes that are small, cameras that are in one
+// medium, run programs that hold none of it.
+std::string Renderer::path_defines() const {
+    return std::string(rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n"
+                                     : "") + // lib/walks/cone_map.glsl
+           (curved_ ? "#define TARN_CURVED 1\n" : "") +
+           (port_ ? "#define TARN_PORT 1\n" : "");
+}
 
 // Of rays from the camera: only theirs are as wide as a pixel.
 std::string Renderer::coarse_define() const {
     return coarse_ && walk_ == scene::Walk::cone_map ? "#define TARN_COARSE 1\n" : "";
 }
 
+gpu::ComputeProgram Renderer::walk_pass(const char* name, const std::string& defined) const {
+    return gpu::ComputeProgram(gpu::load_shader(
+        gpu::shader_root(), text("passes/", name, ".comp"),
+        {{"lib/walks/cone_map.glsl", "lib/walks/" + walk_file() + ".glsl"}}, defined));
+}
+
 void Renderer::use_walk(scene::Walk walk, double setting) {
     walk_ = walk;
     const scene::WalkMethod& method = scene::walk_method(walk_);
     block_.bounds.z = float(setting > 0.0 ? setting : method.default_setting);
-    const auto key = std::pair(walk_, curved_define() + coarse_define() + port_define());
-    if (passes_.count(key))
-        return;
-    const std::string file = walk_file();
-    const auto root = gpu::shader_root();
-    // See lib/walks/cone_map.glsl.
-    const std::string defined =
-        (rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "") + curved_define() + port_define();
-    const auto pass = [&](const char* name, const std::string& more = {}) {
-        return gpu::ComputeProgram(gpu::load_shader(
-            root, text("passes/", name, ".comp"),
-            {{"lib/walks/cone_map.glsl", "lib/walks/" + file + ".glsl"}}, defined + more));
-    };
-    passes_.emplace(key,
-                    WalkPasses{pass("beams"), pass("primary", coarse_define()), pass("secondary"),
-                               pass("shadow"), pass("first_hit"), pass("trace_rays")});
+    const std::string defined = path_defines(), from_camera = defined + coarse_define();
+    const auto key = std::pair(walk_, from_camera);
+    auto known = passes_.find(key);
+    if (known == passes_.end())
+        known = passes_
+                    .emplace(key,
+                             WalkPasses{
+                                 walk_pass("beams", defined), walk_pass("primary", from_camera),
+                                 walk_pass("secondary", defined), walk_pass("shadow", defined),
+                                 walk_pass("first_hit", defined), walk_pass("trace_rays", defined)})
+                    .first;
+    calm_walk_ = &known->second;
 }
 
 std::string Renderer::walk_file() const {
@@ -237,37 +95,19 @@ std::string Renderer::walk_file() const {
 }
 
 const Renderer::WavyPasses& Renderer::wavy_passes() {
-    const std::string defined = (rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n" : "") +
-                                waves_->defines() + air_defines() + sunlight_defines() +
-                                (in_slab_ ? "#define TARN_IN_SLAB 1\n" : "");
-    const auto key = std::pair(walk_, defined + coarse_define());
+    const std::string defined = path_defines() + waves_->defines() + shade_defines() +
+                                sunlight_defines() + (in_slab_ ? "#define TARN_IN_SLAB 1\n" : ""),
+                      from_camera = defined + coarse_define();
+    const auto key = std::pair(walk_, from_camera);
     if (const auto known = wavy_passes_.find(key); known != wavy_passes_.end())
         return known->second;
-    const auto pass = [&](const char* name, const std::string& more = {}) {
-        return gpu::ComputeProgram(gpu::load_shader(
-            gpu::shader_root(), text("passes/", name, ".comp"),
-            {{"lib/walks/cone_map.glsl", "lib/walks/" + walk_file() + ".glsl"}}, defined + more));
-    };
     return wavy_passes_
-        .emplace(key, WavyPasses{pass("primary", coarse_define()), pass("surface", coarse_define()),
-                                 pass("secondary"), pass("shadow"),
-                                 caustics_ ? pass("sunlit") : gpu::ComputeProgram(), pass("shade")})
+        .emplace(key,
+                 WavyPasses{walk_pass("primary", from_camera), walk_pass("surface", from_camera),
+                            walk_pass("secondary", defined), walk_pass("shadow", defined),
+                            caustics_ ? walk_pass("sunlit", defined) : gpu::ComputeProgram(),
+                            walk_pass("shade", defined)})
         .first->second;
-}
-
-// Walks meet water that is raised by the waves' bound; what lies in the slab between is met by
-// lib/walks/meet_waves.glsl. Bounds that know of the water are made anew.
-void Renderer::lift_water(double lift_m) {
-    const Heightfield& ground = scene_.ground;
-    lift_m_ = lift_m;
-    bounds_.set_water_lift(lift_m);
-    block_.heights.z = float(scene_.water.offset_m - ground.offset_m + lift_m);
-    block_.grid.w = float(top_m_ + lift_m);
-    const float per_m = 1.0f / block_.heights.y;
-    block_.units = {per_m, block_.heights.z * per_m, block_.heights.w * per_m,
-                    block_.grid.w * per_m};
-    block_.slab.y = float(water_top_m_ + lift_m - ground.offset_m) * per_m;
-    view_buffer_.write(&block_, sizeof block_); // bounds are made from what it says
 }
 
 void Renderer::prepare_waves(const scene::View& view) {
@@ -339,59 +179,6 @@ void Renderer::prepare_sunlight(const scene::View& view, bool moved) {
     if (moved)
         sunlight_.update(*waves_);
     sunlight_.bind();
-}
-
-// Which water the sun's light comes into, by where it enters; where land hides none of it, no
-// program asks.
-void Renderer::prepare_land_shadow(const scene::View& view) {
-    const glm::dvec3 sun = view.lighting.sun_direction;
-    const glm::dvec3 light = view.lighting.sun_irradiance;
-    if (!view.settings.shadows || !(light.x + light.y + light.z > 0.0)) {
-        shadowed_ = false;
-        shadow_sun_.reset();
-        return;
-    }
-    if (shadow_sun_ != sun) {
-        shadow_sun_ = sun;
-        const auto shadow = scene::land_shadow(scene_, sun);
-        shadowed_ = shadow.has_value();
-        if (shadow) {
-            std::vector<float> heights;
-            heights.reserve(shadow->height_m.size());
-            for (const float h : shadow->height_m)
-                heights.push_back(float(double(h) - scene_.ground.offset_m));
-            land_shadow_ = gpu::Texture2D(GL_R32F, shadow->cols, shadow->rows, 1,
-                                          gpu::Filter::linear, "land's shadow");
-            land_shadow_.upload(GL_RED, GL_FLOAT, heights.data());
-            shadow_softness_m_ = shadow->softness_m;
-        }
-    }
-    block_.sun_irradiance.w = float(shadow_softness_m_);
-    if (shadowed_)
-        land_shadow_.bind(TARN_TEXTURE_LAND_SHADOW);
-}
-
-// The frame looks up what was summed over wavelengths here.
-void Renderer::upload_water(bool spectral) {
-    if (const auto asked = std::pair(spectral, scene_.optics); water_made_ != asked) {
-        water_made_ = asked;
-        const scene::WaterTable table = scene::make_water_table(scene_.optics, spectral);
-        water_ = gpu::Texture2D(GL_RGBA32F, table.texels, int(table.rows.size()), 1,
-                                gpu::Filter::nearest, "water");
-        water_.upload(GL_RGBA, GL_FLOAT, table.packed().data());
-        block_.water = table.scale();
-        block_.optics.z = float(table.sky_entering);
-        // By the path after which a third of the luminance is left.
-        int texel = 1;
-        const auto luminance = [&](int i) {
-            const glm::vec3& c = table.rows[0][std::size_t(i)];
-            return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
-        };
-        while (texel < scene::WaterTable::texels - 1 && luminance(texel) > 0.3679f)
-            ++texel;
-        block_.optics.w = float(1.0 / table.path_m(texel));
-    }
-    water_.bind(TARN_TEXTURE_WATER);
 }
 
 void Renderer::bind_walk(bool with_water) { bounds_.bind(walk_, with_water); }
@@ -482,8 +269,9 @@ void Renderer::prepare(const scene::View& view) {
     const auto water_here = scene_.water_level_m(p.x, p.y);
     port_ = settings.port_m > 0.0 && water_here &&
             std::abs(p.z - *water_here) < settings.port_m + lift_m_;
-    block_.ortho_lod.y = float(settings.port_m);
-    block_.ortho_lod.z = float(settings.dive_light_cd * scene::irradiance_per_lux);
+    block_.diver = {float(settings.port_m),
+                    float(settings.dive_light_cd * scene::irradiance_per_lux),
+                    float(scene::lamp_beside_m), 0.0f};
     lamp_ = settings.dive_light_cd > 0.0;
     locate_camera();
 
@@ -626,9 +414,6 @@ void Renderer::find_port_heights(double level_m) {
                 gpu::load_shader(gpu::shader_root(), "passes/port.comp", {}, waves_->defines()));
         view_buffer_.write(&block_, sizeof block_);
         heights_.bind(TARN_TEXTURE_HEIGHTS);
-        const Heightfield& ground = scene_.ground;
-        waves_->bind({ground.x_m(double(block_.base.x)), ground.y_m(double(block_.base.y))},
-                     lift_m_);
         port_heights_.bind_image(TARN_IMAGE_BEAMS, GL_WRITE_ONLY);
         pass.use();
         glDispatchCompute(TARN_PORT_SIDE / 8, TARN_PORT_SIDE / 8, 1);
@@ -665,7 +450,7 @@ void Renderer::draw_medium() {
     constexpr GLbitfield images = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
     const bool split = (block_.counts.z & (TARN_FLAG_REFLECTION | TARN_FLAG_REFRACTION)) != 0;
     glMemoryBarrier(images);
-    const WalkPasses& calm = walk_passes();
+    const WalkPasses& calm = *calm_walk_;
     const WavyPasses* wavy_ones = wavy() ? &wavy_passes() : nullptr;
     bind_walk(!under_water()); // only from above is water met
     const auto begins = [&](const char* name) {
@@ -716,7 +501,7 @@ void Renderer::find_beams() {
         return;
     }
     bind_walk(!under_water());
-    walk_passes().beams.use();
+    calm_walk_->beams.use();
     glDispatchCompute(GLuint((beams_.width_px() + 7) / 8), GLuint((beams_.height_px() + 3) / 4), 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
@@ -724,7 +509,7 @@ void Renderer::find_beams() {
 void Renderer::find_first_hits() {
     view_buffer_.write(&block_, sizeof block_);
     find_beams();
-    const WalkPasses& pass = walk_passes();
+    const WalkPasses& pass = *calm_walk_;
     pass.first_hit.use();
     glDispatchCompute(groups(int(block_.counts.x)), groups(int(block_.counts.y)), 1);
 }
@@ -747,7 +532,7 @@ std::vector<FieldHit> Renderer::trace_rays(std::span<const FieldRay> rays, scene
         const gpu::Buffer out(count * sizeof(FieldHit), nullptr);
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_RAYS, in.id());
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_ANSWERS, out.id());
-        walk_passes().trace_rays.use();
+        calm_walk_->trace_rays.use();
         glUniform1i(0, with_water);
         glUniform1f(1, float(t_max));
         const GLuint groups_of_64 = GLuint((count + 63) / 64);

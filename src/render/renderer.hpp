@@ -157,13 +157,10 @@ private:
     Blocks blocks_of(int every) const;
     void upload_scene();
     void use_shade();
-    std::string air_defines() const;
-    std::string curved_define() const;
-    std::string port_define() const;
+    std::string path_defines() const;
+    std::string shade_defines() const;
     std::string coarse_define() const;
-    const WalkPasses& walk_passes() const {
-        return passes_.at({walk_, curved_define() + coarse_define() + port_define()});
-    }
+    gpu::ComputeProgram walk_pass(const char* name, const std::string& defined) const;
     std::string sunlight_defines() const;
     void upload_heights();
     void upload_map();
@@ -192,7 +189,7 @@ private:
     gpu::Texture2D
         hits_[3]; ///< ends of the parts of the paths of one tile (shaders/lib/parts.glsl)
     gpu::Buffer view_buffer_, lakes_;
-    std::map<std::string, gpu::ComputeProgram> shade_; ///< by air_defines()
+    std::map<std::string, gpu::ComputeProgram> shade_; ///< by what is defined
     const gpu::ComputeProgram* calm_shade_ = nullptr;  ///< of them, for this picture
     std::vector<glm::vec3> sky_made_;                  ///< as it is on the GPU
     bool hazy_ = false, whole_sky_ = false, mapped_ = false, curved_ = false, coarse_ = false,
@@ -206,6 +203,7 @@ private:
     std::optional<glm::dvec3> shadow_sun_; ///< as the shadow was worked out last
     FieldBounds bounds_;
     std::map<std::pair<scene::Walk, std::string>, WalkPasses> passes_; ///< and what is defined
+    const WalkPasses* calm_walk_ = nullptr; ///< of them, for this picture
     std::map<std::pair<scene::Walk, std::string>, WavyPasses> wavy_passes_;
     std::optional<WaveField> waves_;
     std::optional<double> wave_time_s_; ///< that they show

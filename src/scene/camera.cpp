@@ -38,6 +38,10 @@ Camera look(glm::dvec3 position, double heading_deg, double pitch_deg, double fo
     return look_along(position, direction, up, fov_deg);
 }
 
+double pixel_rad(const Camera& camera, int height_px) {
+    return 2.0 * std::tan(0.5 * camera.fov_deg * degree) / height_px;
+}
+
 glm::dvec3 pixel_direction(const Camera& camera, double px, double py, int width_px,
                            int height_px) {
     const double half = std::tan(0.5 * camera.fov_deg * degree);

@@ -20,6 +20,9 @@ Camera look(glm::dvec3 position, double heading_deg, double pitch_deg, double fo
 /// @throws tarn::Error  if they are zero, parallel or not finite, or fov_deg is outside (0, 170]
 Camera look_along(glm::dvec3 position, glm::dvec3 direction, glm::dvec3 up, double fov_deg);
 
+/// Angle of a pixel in the middle of a picture so many rows high [rad].
+double pixel_rad(const Camera& camera, int height_px);
+
 /// Direction, not normalised, through picture position (px, py) in pixels from the top left.
 glm::dvec3 pixel_direction(const Camera& camera, double px, double py, int width_px, int height_px);
 

@@ -12,9 +12,7 @@ CurvatureDrop curvature_drop(const Scene& scene, const Camera& camera, int heigh
     out.distance_m = std::hypot(std::max(std::abs(g.west_m - p.x), std::abs(g.east_m() - p.x)),
                                 std::max(std::abs(g.south_m() - p.y), std::abs(g.north_m - p.y)));
     out.drop_m = bend_per_m * out.distance_m * out.distance_m;
-    const double pixel_rad =
-        2.0 * std::tan(0.5 * camera.fov_deg * 3.14159265358979323846 / 180.0) / height_px;
-    out.pixels = bend_per_m * out.distance_m / pixel_rad;
+    out.pixels = bend_per_m * out.distance_m / pixel_rad(camera, height_px);
     return out;
 }
 

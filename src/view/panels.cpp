@@ -132,7 +132,7 @@ void water_panel(Session& session, PanelState& state) {
         ImGui::TextDisabled("refilled in %.0f ms", session.last_fill_ms());
 }
 
-bool sun_panel(Session& session) {
+bool sun_panel(Session& session, PanelState& state) {
     bool changed = false;
     const bool by_hand = !session.option("sun").empty() || !session.option("environment").empty();
     if (by_hand) {
@@ -154,12 +154,12 @@ bool sun_panel(Session& session) {
         ImGui::TextDisabled("mean solar time %s",
                             session.option("sun-place").empty() ? "at the lake" : "at that place");
         ImGui::Checkbox("play", &session.play_sun);
-        static char place[64] = "";
         if (!ImGui::IsAnyItemActive())
-            std::snprintf(place, sizeof place, "%s", session.option("sun-place").c_str());
-        if (ImGui::InputTextWithHint("place", "LAT,LON; empty: the lake", place, sizeof place,
-                                     ImGuiInputTextFlags_EnterReturnsTrue))
-            changed |= session.set("sun-place", place);
+            std::snprintf(state.sun_place, sizeof state.sun_place, "%s",
+                          session.option("sun-place").c_str());
+        if (ImGui::InputTextWithHint("place", "LAT,LON; empty: the lake", state.sun_place,
+                                     sizeof state.sun_place, ImGuiInputTextFlags_EnterReturnsTrue))
+            changed |= session.set("sun-place", state.sun_place);
     } else {
         ImGui::Text("%s", session.option("time").c_str());
         if (ImGui::Button("in solar time instead"))
@@ -269,8 +269,10 @@ bool effects_panel(Session& session, PanelState& state, Requests& asked) {
 
 bool planner_panel(Session& session, Requests& asked) {
     auto percent = float(100.0 * session.max_error);
-    if (ImGui::SliderFloat("error", &percent, 0.1f, 10.0f, "at most %.1f %%",
-                           ImGuiSliderFlags_Logarithmic))
+    if (const auto ms = session.services.frame_time_ms)
+        ImGui::Text("as true as %.3g ms a picture allow", *ms);
+    else if (ImGui::SliderFloat("error", &percent, 0.1f, 10.0f, "at most %.1f %%",
+                                ImGuiSliderFlags_Logarithmic))
         session.max_error = 0.01 * double(percent);
     asked.plan = ImGui::Button("plan this view");
     ImGui::SameLine();
@@ -458,7 +460,7 @@ Requests draw_panels(Session& session, const Screen& screen, PanelState& state, 
         if (section("Water level", true))
             water_panel(session, state);
         if (section("Sun and air", true))
-            asked.view_changed |= sun_panel(session);
+            asked.view_changed |= sun_panel(session, state);
         if (section("Wind and waves", false))
             asked.view_changed |= wind_panel(session);
         if (section("Clarity", false))

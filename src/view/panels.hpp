@@ -28,7 +28,7 @@ struct PanelState {
     bool shown = true, help = false;
     double frames_per_s = 0.0;
     std::string device;
-    char bookmark[64] = "", layer[512] = "", open[512] = "";
+    char sun_place[64] = "", bookmark[64] = "", layer[512] = "", open[512] = "";
     std::vector<std::pair<std::string, double>> pass_ms;
     std::optional<Reading> pointer;
     bool pointer_known = false; ///< else nothing has been drawn there yet

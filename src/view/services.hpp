@@ -78,8 +78,10 @@ struct Services {
         save_picture;
     /// @throws tarn::Error
     std::function<Layer(const std::string& path)> read_layer;
-    /// Chooses what a view needs for a mean relative radiance error; takes as long as some fifteen
-    /// pictures. @throws tarn::Error, tarn::Cancelled
+    /// What plans keep to instead of an error, where the window was opened with that.
+    std::optional<double> frame_time_ms;
+    /// Chooses what a view needs for a mean relative radiance error, or for that time; takes as
+    /// long as some fifteen pictures. @throws tarn::Error, tarn::Cancelled
     std::function<Planned(render::Renderer&, const scene::Scene&, const scene::View&,
                           double max_error, const Progress&)>
         plan;

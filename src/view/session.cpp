@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 namespace tarn::view {
 
@@ -63,6 +64,8 @@ bool Session::set(const Options& changes) {
         scene::View made = services.make_view(with_camera, scene);
         view = std::move(made);
         options_ = std::move(wanted);
+        for (const auto& [name, value] : changes) // somebody's own from here, not the plan's
+            before_plan_.erase(name);
         return true;
     } catch (const Error& error) {
         scene.optics = before;
@@ -78,14 +81,14 @@ scene::View Session::unplanned_view() {
             options.erase(name);
         else
             options[name] = value;
+    scene.optics = usual_optics_;
     return services.make_view(options, scene);
 }
 
 void Session::take_plan(const Planned& plan) {
     std::map<std::string, std::string> before;
-    Options changes;
-    for (const auto& [name, value] : before_plan_)
-        changes[name] = value; // what the new plan says nothing of is as it was
+    Options changes(before_plan_.begin(),
+                    before_plan_.end()); // what it says nothing of is as it was
     for (const auto& [name, value] : plan.options) {
         const auto known = before_plan_.find(name);
         before[name] = known != before_plan_.end() ? known->second : option(name);
@@ -125,8 +128,11 @@ Options Session::picture_options() const {
     return out;
 }
 
-SolarTime Session::usual_time() const { // geo::default_time()
-    return {2026, scene.lakes.front().position.lat_deg >= 0.0 ? 172 : 355, 9.5};
+SolarTime Session::usual_time() const { // geo::default_time(), at the sun's place
+    const std::string place = option("sun-place");
+    const double lat_deg =
+        place.empty() ? scene.lakes.front().position.lat_deg : std::atof(place.c_str());
+    return {2026, lat_deg >= 0.0 ? 172 : 355, 9.5};
 }
 
 bool Session::advance(double seconds) {

@@ -1,10 +1,10 @@
 #include "view/window.hpp"
-#include "scene/curvature.hpp"
 
 #include "core/error.hpp"
 #include "core/text.hpp"
 #include "gpu/gl.hpp"
 #include "render/renderer.hpp"
+#include "scene/curvature.hpp"
 #include "view/cone_maker.hpp"
 #include "view/desktop.hpp"
 #include "view/overlay.hpp"

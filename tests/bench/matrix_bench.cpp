@@ -7,15 +7,14 @@
 //                     NAME,NAME]
 //                     [--seed-table 1] [--json FILE]
 #include "bench/matrix.hpp"
+#include "bench/program.hpp"
 #include "bench/seed_table.hpp"
-#include "core/error.hpp"
 #include "core/text.hpp"
 #include "gpu/context.hpp"
 #include "scene/samples.hpp"
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <iostream>
@@ -25,40 +24,16 @@ namespace {
 
 using namespace tarn;
 
-int run(int argc, char** argv) {
-    std::string scenes = "bowl,mountain:4096", scaling, sizes = "1920x1080", json, views;
-    bench::MatrixOptions options{.runs = 31};
-    std::vector<std::string> effects;
-    bool seed_table = false;
-    double wind = 6.0;
-    for (int i = 1; i < argc; ++i) {
-        const std::string word = argv[i];
-        if (i + 1 >= argc)
-            throw Error(word + " needs a value");
-        const std::string value = argv[++i];
-        if (word == "--scenes")
-            scenes = value;
-        else if (word == "--scaling")
-            scaling = value;
-        else if (word == "--size")
-            sizes = value;
-        else if (word == "--seed-table")
-            seed_table = value == "1";
-        else if (word == "--wind")
-            wind = std::atof(value.c_str());
-        else if (word == "--samples")
-            options.samples = std::max(1, std::atoi(value.c_str()));
-        else if (word == "--runs")
-            options.runs = std::max(1, std::atoi(value.c_str()));
-        else if (word == "--views")
-            views = value;
-        else if (word == "--effects")
-            effects = split(value, ',');
-        else if (word == "--json")
-            json = value;
-        else
-            throw Error("unknown option " + word);
-    }
+int run(const bench::Words& words) {
+    const std::string scenes = words.text("--scenes", "bowl,mountain:4096"),
+                      scaling = words.text("--scaling"), json = words.text("--json"),
+                      sizes = words.text("--size", "1920x1080"), views = words.text("--views");
+    bench::MatrixOptions options;
+    options.samples = words.count("--samples", options.samples);
+    options.runs = words.count("--runs", 31);
+    const std::vector<std::string> effects = split(words.text("--effects"), ',');
+    const bool seed_table = words.text("--seed-table") == "1";
+    const double wind = words.number("--wind", 6.0);
     const gpu::Context context;
     std::vector<bench::MatrixResult> results;
     const auto write = [&](const std::string& table) { // as far as it has come
@@ -87,8 +62,9 @@ int run(int argc, char** argv) {
         const glm::dvec3 sun = glm::normalize(glm::dvec3(0.5, -0.4, 0.75));
         bool first = at < whole;
         for (const std::string& size : split(sizes, ',')) {
-            if (std::sscanf(size.c_str(), "%dx%d", &options.width_px, &options.height_px) != 2)
-                throw Error("--size '" + size + "' is not understood");
+            const auto [width, height] = bench::parse_size(size);
+            options.width_px = width;
+            options.height_px = height;
             options.effects = first ? effects : std::vector<std::string>{"all"};
             first = false;
             for (const double speed :
@@ -122,10 +98,8 @@ int run(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
-    try {
-        return run(argc, argv);
-    } catch (const std::exception& e) {
-        std::cerr << e.what() << "\n";
-        return 1;
-    }
+    return tarn::bench::program(argc, argv,
+                                {"--scenes", "--scaling", "--size", "--seed-table", "--wind",
+                                 "--samples", "--runs", "--views", "--effects", "--json"},
+                                run);
 }

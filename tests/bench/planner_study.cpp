@@ -4,9 +4,9 @@
 // keeps the budget there. Made of what draws alone. Results: docs/planner.md.
 //
 //   tarn_planner_study [--views N] [--size WxH] [--seed N] [--json FILE]
+#include "bench/program.hpp"
 #include "bench/random_views.hpp"
 #include "bench/timing.hpp"
-#include "core/error.hpp"
 #include "core/text.hpp"
 #include "gpu/context.hpp"
 #include "image/compare.hpp"
@@ -16,7 +16,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
 
@@ -65,26 +64,10 @@ std::vector<Fixed> grid_of(bool wavy) {
     return out;
 }
 
-int run(int argc, char** argv) {
-    int views = 10, width = 960, height = 540, seed = 8;
-    std::string json;
-    for (int i = 1; i < argc; ++i) {
-        const std::string word = argv[i];
-        if (i + 1 >= argc)
-            throw Error(word + " needs a value");
-        const std::string value = argv[++i];
-        if (word == "--views")
-            views = std::max(1, std::atoi(value.c_str()));
-        else if (word == "--size") {
-            if (std::sscanf(value.c_str(), "%dx%d", &width, &height) != 2)
-                throw Error("--size '" + value + "' is not understood");
-        } else if (word == "--seed")
-            seed = std::atoi(value.c_str());
-        else if (word == "--json")
-            json = value;
-        else
-            throw Error("unknown option " + word);
-    }
+int run(const bench::Words& words) {
+    const int views = words.count("--views", 10), seed = words.count("--seed", 8);
+    const auto [width, height] = bench::parse_size(words.text("--size", "960x540"));
+    const std::string json = words.text("--json");
     const gpu::Context context;
     std::cout << "device: " << context.renderer() << ", " << width << "x" << height << "\n"
               << "| scene | views | within budget | worst, of the budget | mean used | speed-up | "
@@ -201,10 +184,5 @@ int run(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
-    try {
-        return run(argc, argv);
-    } catch (const std::exception& e) {
-        std::cerr << e.what() << "\n";
-        return 1;
-    }
+    return tarn::bench::program(argc, argv, {"--views", "--size", "--seed", "--json"}, run);
 }

@@ -6,8 +6,8 @@
 //
 //   tarn_planner_truth [--views N] [--size WxH] [--samples N] [--seed N] [--wind 0|1]
 #include "bench/matrix.hpp"
+#include "bench/program.hpp"
 #include "bench/random_views.hpp"
-#include "core/error.hpp"
 #include "core/text.hpp"
 #include "gpu/context.hpp"
 #include "image/compare.hpp"
@@ -16,35 +16,17 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <iostream>
 
 namespace {
 
 using namespace tarn;
 
-int run(int argc, char** argv) {
-    int views = 10, width = 320, height = 180, samples = 16, seed = 8;
-    bool wind = true;
-    for (int i = 1; i < argc; ++i) {
-        const std::string word = argv[i];
-        if (i + 1 >= argc)
-            throw Error(word + " needs a value");
-        const std::string value = argv[++i];
-        if (word == "--views")
-            views = std::max(1, std::atoi(value.c_str()));
-        else if (word == "--size") {
-            if (std::sscanf(value.c_str(), "%dx%d", &width, &height) != 2)
-                throw Error("--size '" + value + "' is not understood");
-        } else if (word == "--samples")
-            samples = std::max(1, std::atoi(value.c_str()));
-        else if (word == "--seed")
-            seed = std::atoi(value.c_str());
-        else if (word == "--wind")
-            wind = value != "0";
-        else
-            throw Error("unknown option " + word);
-    }
+int run(const bench::Words& words) {
+    const int views = words.count("--views", 10), samples = words.count("--samples", 16),
+              seed = words.count("--seed", 8);
+    const auto [width, height] = bench::parse_size(words.text("--size", "320x180"));
+    const bool wind = words.text("--wind") != "0";
     const gpu::Context context;
     std::cout
         << "device: " << context.renderer() << ", " << width << "x" << height << ", " << samples
@@ -99,10 +81,6 @@ int run(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
-    try {
-        return run(argc, argv);
-    } catch (const std::exception& e) {
-        std::cerr << e.what() << "\n";
-        return 1;
-    }
+    return tarn::bench::program(argc, argv, {"--views", "--size", "--samples", "--seed", "--wind"},
+                                run);
 }

@@ -98,6 +98,32 @@ TEST(Session, WhatCannotBeChangesNothing) {
     EXPECT_EQ(session.options().count("wind"), 0u);
 }
 
+// A plan's options are taken back with it; what somebody changes meanwhile is theirs, and stays.
+TEST(Session, APlanIsTakenBackAndOnesOwnChangesStay) {
+    Desk desk;
+    Session session(desk.scene, desk.services, {{"wind", "4"}, {"caustics", "mesh"}});
+    view::Planned plan;
+    plan.options = {{"waves", "calm"}, {"caustics", "off"}, {"no-shadows", "true"}};
+    plan.reasons = {"waves: a plane"};
+    session.take_plan(plan);
+    EXPECT_EQ(session.option("waves"), "calm");
+    EXPECT_EQ(session.option("caustics"), "off");
+    EXPECT_TRUE(session.planned_for == session.flight.pose());
+    plan.options = {{"caustics", "splat"}}; // the next says nothing of waves and shadows
+    session.take_plan(plan);
+    EXPECT_EQ(session.option("waves"), "");
+    EXPECT_EQ(session.option("no-shadows"), "");
+    EXPECT_EQ(session.option("caustics"), "splat");
+    session.drop_plan();
+    EXPECT_EQ(session.option("caustics"), "mesh");
+    EXPECT_EQ(session.option("wind"), "4");
+    EXPECT_TRUE(session.reasons.empty());
+    session.take_plan(plan);
+    session.set("caustics", "back");
+    session.drop_plan();
+    EXPECT_EQ(session.option("caustics"), "back");
+}
+
 TEST(Session, WaterGoesBackToTheScenes) {
     Desk desk;
     const std::string usual = desk.scene.optics.name;

@@ -36,7 +36,9 @@ float bisect(sampler2D smooth_heights, Field field, Ray ray, Span span, float t_
 bool sampled_span(Field field, Ray ray, float t_max, out Span span) {
     if (!clip_ray(field, ray, t_max, span))
         return false;
-#ifndef TARN_CURVED
+#ifdef TARN_CURVED
+    span.t_end = min(span.t_end, passes_height(span.oz - field.lowest, span.dz, span.bend).x);
+#else
     if (span.dz < 0.0)
         span.t_end = min(span.t_end, (field.lowest - span.oz) / span.dz);
 #endif
