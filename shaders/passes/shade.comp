@@ -12,6 +12,9 @@
 #include "lib/medium.glsl"
 #include "lib/parts.glsl"
 #include "lib/sky.glsl"
+#ifdef TARN_SPACE_LINES
+#include "lib/space_lines.glsl"
+#endif
 #include "lib/sunlight.glsl"
 #include "lib/surface.glsl"
 
@@ -289,6 +292,48 @@ vec3 part_radiance(Part part, End end, float before_m, float water_m, Sunlit sun
     return radiance;
 }
 
+#ifdef TARN_SPACE_LINES
+// What a line or point in space shows of itself. As a sign it is as bright wherever it is, as a matte thing it is lit by
+// a sun that shines from anywhere, with no shadows, and seen in the water by the light that is not scattered on the
+// way, for it is small.
+//
+//   mark     its share of the pixel is made less by the water
+//   water_m  path in the water before the part
+vec3 mark_radiance(Part part, inout SpaceMark mark, float before_m, float water_m, Sunlit sunlit) {
+    const vec3 albedo = vec3(0.85, 0.18, 0.05), luminance = vec3(0.2126, 0.7152, 0.0722);
+    if (view.diver.w > 0.0)
+        return albedo * inverse_pi * view.diver.w;
+    vec3 sky_light = view.sky_irradiance.rgb, sun_light = view.sun_irradiance.rgb;
+    if (!part.in_water) {
+        vec3 radiance = albedo * inverse_pi * 0.5 * (sky_light + max(view.sun.z, 0.0) * sun_light);
+#ifdef TARN_HAZE
+        radiance = through_air(part, mark.t, radiance);
+#endif
+        return radiance;
+    }
+    float depth = max(depth_of(part) - part.direction.z * mark.t, 0.0), way_m = water_m + mark.t;
+    vec3 below = sun_below(view.sun.xyz, view.optics.x);
+    vec3 irradiance = 0.5 * (sky_light * view.optics.z * transmittance(water, view.water, sky_slant * depth + way_m) +
+                             below.z * sun_irradiance_below(below) * transmittance(water, view.water, depth / below.z + way_m));
+#ifdef TARN_LAMP
+    if (before_m == 0.0)
+        irradiance += 0.5 * lamp_intensity(part.direction) * transmittance(water, view.water, 2.0 * mark.t) /
+                      (mark.t * mark.t + view.diver.z * view.diver.z);
+#endif
+    float drawn = dot(luminance, image_transmittance(water, view.water, way_m)),
+          left = dot(luminance, transmittance(water, view.water, way_m));
+    mark.cover *= clamp(drawn / max(left, 1e-9), 0.0, 1.0);
+    return albedo * inverse_pi * irradiance + scattered_radiance(part, 0.0, mark.t, water_m, sunlit.way);
+}
+
+// Does a part show lines in space, cut by the water's level?
+SpaceMark mark_before(Part part, float end_m, float before_m) {
+    if (view.exposed.z == (part.in_water ? 1.0 : 2.0))
+        return SpaceMark(far_m, 0.0);
+    return mark_on(view, part, end_m, before_m);
+}
+#endif
+
 #ifdef TARN_WAVES
 // Slopes of a wavy surface inside a pixel, and what they do to light from above, in the mean over those that
 // face the viewer. Facets that hide each other are left to the even chance of each (Smith 1967's assumption).
@@ -366,6 +411,7 @@ void main() {
     if (first.in_water)
         sunlit = sunlit_of(local, 0);
 #endif
+    Sunlit sunlit_first = sunlit;
     vec3 radiance = part_radiance(first, first_end, 0.0, 0.0, sunlit);
     float water_m = first.in_water ? first_end.t : 0.0;
     vec3 remaining = first.in_water ? transmittance(water, view.water, water_m) : vec3(1.0); // of light from its end
@@ -406,7 +452,12 @@ void main() {
                     // The sky's mean is known; where the ray met land instead, that takes the place of the
                     // sky in its direction.
                     vec3 mirrored = glitter.sky + glitter.sun;
-                    if ((end.flags & end_ground) == 0u) {
+#ifdef TARN_SPACE_LINES
+                    bool met_something = (end.flags & end_ground) != 0u || mark_before(part, end.t, first_end.t).cover > 0.0;
+#else
+                    bool met_something = (end.flags & end_ground) != 0u;
+#endif
+                    if (!met_something) {
                         radiance += mirrored;
                         continue;
                     }
@@ -419,7 +470,15 @@ void main() {
             if (part.in_water)
                 sunlit = sunlit_of(local, first.in_water ? 1 : 0);
 #endif
-            vec3 brought = part.weight * part_radiance(part, end, first_end.t, water_m, sunlit);
+            vec3 brought = part_radiance(part, end, first_end.t, water_m, sunlit);
+#ifdef TARN_SPACE_LINES
+            SpaceMark mark = mark_before(part, end.t, first_end.t);
+            if (mark.cover > 0.0) {
+                vec3 marked_so = mark_radiance(part, mark, first_end.t, water_m, sunlit);
+                brought = mix(brought, marked_so, mark.cover);
+            }
+#endif
+            brought *= part.weight;
             if (!part.in_water) // from above, a sample's land may hide more sky than its pixel has
                 brought = first.in_water ? remaining * brought : max(beside + brought, vec3(0.0));
             radiance += brought;
@@ -428,6 +487,13 @@ void main() {
 #ifdef TARN_HAZE
     if (!first.in_water && (first_end.flags & (end_surface | end_overlay)) != 0u)
         radiance = through_air(first, first_end.t, radiance);
+#endif
+#ifdef TARN_SPACE_LINES
+    SpaceMark mark = mark_before(first, first_end.t, 0.0);
+    if (mark.cover > 0.0) {
+        vec3 marked_so = mark_radiance(first, mark, 0.0, 0.0, sunlit_first);
+        radiance = mix(radiance, marked_so, mark.cover);
+    }
 #endif
     radiance *= view.options.w;
     if (view.offset.z > 0.5)

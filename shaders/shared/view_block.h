@@ -19,6 +19,7 @@ using ivec4 = glm::ivec4;
 #define TARN_BUFFER_LAKES 0   // storage buffer of vec4: x level [m, block heights], y 1 = bed known
 #define TARN_BUFFER_RAYS 1    // passes/trace_rays.comp
 #define TARN_BUFFER_ANSWERS 2 // passes/trace_rays.comp
+#define TARN_BUFFER_SPACE_LINES 2 // lib/space_lines.glsl
 #define TARN_TEXTURE_HEIGHTS 0 // RG16: ground and water codes, one texel a node
 #define TARN_TEXTURE_BOUNDS 1  // what the walk skips by: see its file in lib/walks
 #define TARN_TEXTURE_SKY 2     // RGBA32F: sky radiance
@@ -73,7 +74,8 @@ struct ViewBlock {
     vec4 ortho;           // xy: grid position of its north-west corner, zw: nodes per picture side
     vec4 ortho_lod;       // x: metres per pixel, yzw: -
     vec4 diver;           // of the camera: x: radius of its port [m]; its lamp's y: intensity along the view
-                          // [irradiance at 1 m], z: distance from the lens [m], w: -
+                          // [irradiance at 1 m], z: distance from the lens [m]
+                          // w: irradiance on lines in space, to be signs; 0: they are lit as things
     vec4 options;         // x: lift of shadow rays [m], y: level of the water the camera is in [m],
                           // z: 1 if that lake's bed is known, w: weight of this sample
     vec4 offset;          // xy: position inside the pixel, z: index of the sample, w: how far the walk's water is

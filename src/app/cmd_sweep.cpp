@@ -135,7 +135,8 @@ public:
     Sweep(const Words& words, const scene_files::OptionList& common)
         : words_(words), common_(common), plan_(make_plan(words)),
           scene_(scene_files::load(words.scene)), identity_(scene_files::identity(words.scene)) {
-        lay_layers(words.view, scene_);
+        layers_ = read_layers(words.view, scene_.frame);
+        lay_layers(layers_, scene_);
     }
 
     const Plan& plan() const { return plan_; }
@@ -190,6 +191,7 @@ private:
     const scene_files::OptionList& common_;
     Plan plan_;
     scene::Scene scene_; ///< as imported
+    std::vector<scene::MapLayer> layers_;
     std::string identity_;
     std::optional<dem::Refill> refill_;
     struct Usual { ///< of the lake as imported
@@ -249,6 +251,7 @@ int Sweep::draw(const std::vector<Job>& jobs) {
             if (level != job.level) {
                 renderer.reset();
                 move_level(refill(), plan_.levels_m[job.level], scene, true);
+                scene::hang_layers(scene, layers_);
                 level = job.level;
             }
             scene::View view = make_view(words, scene);

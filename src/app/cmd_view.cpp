@@ -174,18 +174,7 @@ view::Services services_for(const std::string& folder, const scene::Scene& as_im
         return planned_of(render::make_plan(renderer, scene, view, budget, progress));
     };
     out.read_layer = [frame = as_imported.frame](const std::string& path) {
-        view::Layer layer;
-        layer.name = fs::path(path).filename().string();
-        for (const dem::VectorFeature& f : dem::read_vectors(path, frame)) {
-            for (const auto& line : f.lines) {
-                layer.lines.emplace_back();
-                for (const ScenePoint& p : line)
-                    layer.lines.back().push_back({p.x_m, p.y_m});
-            }
-            for (const ScenePoint& p : f.points)
-                layer.points.push_back({{p.x_m, p.y_m}, f.label});
-        }
-        return layer;
+        return read_layer(path, frame);
     };
     return out;
 }
@@ -256,7 +245,8 @@ int run_view(const Words& words, view::Options options) {
             }
             scene = scene_files::load(folder);
             if (first)
-                lay_layers(words.view, scene); // refuses what cannot be read before a window opens
+                // Refuses what cannot be read before a window opens.
+                lay_layers(read_layers(words.view, scene.frame), scene);
         } catch (const Error& error) {
             if (first)
                 throw;

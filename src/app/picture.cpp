@@ -10,6 +10,7 @@
 #include "image/annotate.hpp"
 #include "image/tone.hpp"
 #include "scene/exposure.hpp"
+#include "scene/labels.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -96,6 +97,7 @@ void add_picture_options(CLI::App& c, PictureWords& w) {
         ->check(CLI::IsMember({"eye", "none"}))
         ->capture_default_str();
     c.add_flag("--caption", w.caption, "below a .png a bar with place, level, date and scale");
+    c.add_flag("--labels", w.labels, "names of the layers' points beside them, in a .png");
     c.add_flag("--sidecar", w.sidecar,
                "beside the picture a .json that --settings makes it again from");
 }
@@ -151,11 +153,12 @@ std::string short_sum(const std::string& text) {
 std::string files_mark(const scene_files::OptionList& options) {
     std::string out;
     for (const auto& [name, value] : options) {
-        if (name != "layers" && name != "water-table" && name != "wind-rose" &&
-            name != "environment" && name != "track")
+        const bool layers = name == "layers" || name == "layers-3d";
+        if (!layers && name != "water-table" && name != "wind-rose" && name != "environment" &&
+            name != "track")
             continue;
         for (const std::filesystem::path path :
-             name == "layers" ? split(value, ':') : std::vector<std::string>{value}) {
+             layers ? split(value, ':') : std::vector<std::string>{value}) {
             std::error_code failed;
             const auto size = std::filesystem::file_size(path, failed);
             const auto time = std::filesystem::last_write_time(path, failed);
@@ -225,6 +228,23 @@ Picture add_caption(const Picture& picture, const Image& image, const scene::Sce
     return out;
 }
 
+void add_labels(Picture& picture, const Image& image, const scene::Scene& scene,
+                const scene::View& view) {
+    const int size = std::max(11, picture.height_px / 45);
+    const auto pixel = [](double place, int pixels) {
+        return std::clamp(int(place * pixels), 0, pixels - 1);
+    };
+    for (const scene::ShownLabel& label : scene::shown_labels(
+             scene, view.camera, double(image.width_px) / image.height_px, view.settings.drape_on,
+             [&](double x, double y) {
+                 const std::size_t row = std::size_t(pixel(y, image.height_px)),
+                                   col = std::size_t(pixel(x, image.width_px));
+                 return std::abs(double(image.distance_m[row * std::size_t(image.width_px) + col]));
+             }))
+        image::draw_text(picture, pixel(label.x, picture.width_px) + size / 2,
+                         pixel(label.y, picture.height_px) - size / 3, size, label.text);
+}
+
 void check_outputs(const std::vector<std::string>& outputs) {
     for (const std::string& output : outputs) {
         const std::string extension = std::filesystem::path(output).extension().string();
@@ -253,6 +273,8 @@ void write_picture(const std::string& output, const PictureWords& words, const I
         const double exposure = record.exposure.value_or(
             words.tone == "none" ? 1.0 : choose_exposure(words.exposure, picture, scene, view));
         Picture out = develop(words, picture, exposure);
+        if (words.labels)
+            add_labels(out, picture, scene, view);
         if (words.caption)
             out = add_caption(out, picture, scene, view, record.time);
         image::write_png(output, out, metadata);

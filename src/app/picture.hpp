@@ -12,7 +12,7 @@ namespace tarn::app {
 
 struct PictureWords {
     std::string exposure = "auto", tone = "eye";
-    bool caption = false, sidecar = false;
+    bool caption = false, labels = false, sidecar = false;
 };
 
 /// Adds the options of PictureWords to a command.
@@ -41,6 +41,11 @@ std::string describe_time(const ViewWords& words, const scene::Scene& scene);
 /// Below the picture a bar with place, level, date and scale.
 Picture add_caption(const Picture& picture, const Image& image, const scene::Scene& scene,
                     const scene::View& view, const std::string& time);
+
+/// Writes the names of the layers' points beside them, where the picture shows them.
+/// @param image  that the picture was developed from
+void add_labels(Picture& picture, const Image& image, const scene::Scene& scene,
+                const scene::View& view);
 
 /// Picture for the eye.
 /// @param exposure  factor on radiance

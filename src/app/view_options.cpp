@@ -7,7 +7,6 @@
 #include "geo/frame.hpp"
 #include "geo/sun.hpp"
 #include "image/files.hpp"
-#include "scene/drape.hpp"
 #include "scene/environment.hpp"
 #include "scene/presets.hpp"
 #include "scene/water_types.hpp"
@@ -156,13 +155,14 @@ std::vector<double> parse_levels(const std::string& words) {
 
 scene::Scene load_scene(const std::string& folder, const ViewWords& words) {
     scene::Scene scene = scene_files::load(folder);
-    lay_layers(words, scene);
-    if (!words.level_m)
-        return scene;
-    const Progress progress = console_progress();
-    dem::Refill refill = make_refill(folder, scene, words.lake, progress);
-    move_level(refill, *words.level_m, scene, true);
-    end_progress();
+    const std::vector<scene::MapLayer> layers = read_layers(words, scene.frame);
+    if (words.level_m) {
+        const Progress progress = console_progress();
+        dem::Refill refill = make_refill(folder, scene, words.lake, progress);
+        move_level(refill, *words.level_m, scene, true);
+        end_progress();
+    }
+    lay_layers(layers, scene);
     return scene;
 }
 
@@ -174,25 +174,39 @@ void move_level(dem::Refill& refill, double level_m, scene::Scene& scene, bool s
             scene.exposed_bed = {refill.lake().level_m, std::move(*bare)};
 }
 
-void lay_layers(const ViewWords& words, scene::Scene& scene) {
-    std::vector<std::vector<glm::dvec2>> lines;
-    std::vector<glm::dvec2> points;
-    for (const std::string& path : split(words.layers, ':'))
-        for (const dem::VectorFeature& f : dem::read_vectors(path, scene.frame)) {
-            for (const auto& line : f.lines) {
-                lines.emplace_back();
-                for (const ScenePoint& p : line)
-                    lines.back().push_back({p.x_m, p.y_m});
-            }
-            for (const ScenePoint& p : f.points)
-                points.push_back({p.x_m, p.y_m});
+scene::MapLayer read_layer(const std::string& path, const geo::Frame& frame) {
+    scene::MapLayer out;
+    out.name = std::filesystem::path(path).filename().string();
+    const auto place = [](const dem::VectorPlace& p) { return glm::dvec3(p.x_m, p.y_m, p.z_m); };
+    for (const dem::VectorFeature& f : dem::read_vectors(path, frame)) {
+        for (const auto& line : f.lines)
+            std::transform(line.begin(), line.end(),
+                           std::back_inserter(out.shapes.lines.emplace_back()), place);
+        for (const dem::VectorPlace& p : f.points) {
+            out.shapes.points.push_back(place(p));
+            out.labels.push_back(f.label);
         }
-    scene.drape.reset();
-    if (lines.empty() && points.empty())
-        return;
-    scene.drape = scene::make_drape(scene.ground, lines, points);
-    if (!scene.drape)
+    }
+    return out;
+}
+
+std::vector<scene::MapLayer> read_layers(const ViewWords& words, const geo::Frame& frame) {
+    std::vector<scene::MapLayer> out;
+    for (const std::string& path : split(words.layers, ':'))
+        out.push_back(read_layer(path, frame));
+    for (const std::string& path : split(words.layers_3d, ':')) {
+        out.push_back(read_layer(path, frame));
+        out.back().heights = words.layers_3d_heights == "level"    ? scene::HeightsFrom::level
+                             : words.layers_3d_heights == "ground" ? scene::HeightsFrom::ground
+                                                                   : scene::HeightsFrom::datum;
+    }
+    return out;
+}
+
+void lay_layers(const std::vector<scene::MapLayer>& layers, scene::Scene& scene) {
+    if (!scene::drape_layers(scene, layers))
         throw Error("--layers: nothing of them lies on the scene", "check their places and CRS");
+    scene::hang_layers(scene, layers);
 }
 
 dem::Refill make_refill(const std::string& folder, const scene::Scene& scene, int lake_id,
@@ -335,6 +349,16 @@ void add_view_options(CLI::App& c, ViewWords& w) {
         "--layers", w.layers,
         "vector files (GeoJSON, GeoPackage, GPX, shapefile ...) with : between them, drawn "
         "on ground and bed");
+    c.add_option("--layers-3d", w.layers_3d,
+                 "the same at heights of their own: lines and points in air and water");
+    c.add_option("--layers-3d-heights", w.layers_3d_heights,
+                 "what those heights count from: the scene's datum, the water's level, the ground "
+                 "or bed; without heights they lie there")
+        ->check(CLI::IsMember({"datum", "level", "ground"}))
+        ->capture_default_str();
+    c.add_flag("--layers-3d-lit", w.layers_3d_lit,
+               "as things that light falls on and water hides; else as signs, bright wherever they "
+               "are");
     c.add_option("--layers-on", w.layers_on,
                  "where they show, cut by the water's level: all, dry (land), flooded (bed)")
         ->check(CLI::IsMember({"all", "dry", "flooded"}));
@@ -552,6 +576,7 @@ scene::View make_view(const ViewWords& w, scene::Scene& scene) {
     view.settings.drape_on = w.layers_on == "dry"       ? scene::DrapeOn::dry
                              : w.layers_on == "flooded" ? scene::DrapeOn::flooded
                                                         : scene::DrapeOn::all;
+    view.settings.space_lines_lit = w.layers_3d_lit;
     view.settings.coarse_far_land = w.coarse_far_land;
     if (w.curvature != "auto")
         view.settings.earth_curvature = w.curvature == "on";

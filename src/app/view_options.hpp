@@ -1,6 +1,7 @@
 #pragma once
 /// @file view_options.hpp  Camera, light and picture settings as people write them -> a View.
 #include "dem/refill.hpp"
+#include "scene/map_layers.hpp"
 #include "scene/settings.hpp"
 
 #include <CLI/App.hpp>
@@ -36,7 +37,9 @@ struct ViewWords {
     std::optional<std::uint32_t> wave_seed;
     std::optional<double> level_m; ///< of the lake that moves; default: as imported
     int lake = 1;                  ///< its id
-    std::string layers;            ///< vector files, colons between them
+    std::string layers, layers_3d; ///< vector files, colons between them
+    std::string layers_3d_heights = "datum";
+    bool layers_3d_lit = false;
     std::string settings_file;
 };
 
@@ -78,9 +81,17 @@ dem::Refill make_refill(const std::string& folder, const scene::Scene& scene, in
 /// @throws tarn::Error  if it cannot stand there
 void move_level(dem::Refill& refill, double level_m, scene::Scene& scene, bool shore);
 
-/// Lays the layers that the words name over the ground.
+/// A vector file as a layer that is draped.
 /// @throws tarn::Error  naming the file
-void lay_layers(const ViewWords& words, scene::Scene& scene);
+scene::MapLayer read_layer(const std::string& path, const geo::Frame& frame);
+
+/// The layers that the words name, draped and in space.
+/// @throws tarn::Error  naming the file
+std::vector<scene::MapLayer> read_layers(const ViewWords& words, const geo::Frame& frame);
+
+/// Drapes layers, and hangs those in space.
+/// @throws tarn::Error  also where nothing that is to be draped lies on the scene
+void lay_layers(const std::vector<scene::MapLayer>& layers, scene::Scene& scene);
 
 /// "300:320:0.5" (both ends included) or "300,310,313.31": levels [m].
 /// @throws tarn::Error

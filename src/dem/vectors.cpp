@@ -22,7 +22,8 @@ struct Reader {
     std::string name;
     std::size_t vertices = 0;
 
-    bool place(double x, double y, ScenePoint& out) {
+    bool place(const OGRPoint& point, VectorPlace& out) {
+        const double x = point.getX(), y = point.getY();
         if (!std::isfinite(x) || !std::isfinite(y))
             return false;
         if (!declared && (std::abs(x) > 360.0 || std::abs(y) > 90.0))
@@ -35,22 +36,27 @@ struct Reader {
         double lon = x, lat = y;
         if (!to_wgs84.Transform(1, &lon, &lat) || !(std::abs(lat) <= 90.0))
             return false;
-        out = geo::to_scene(frame, {lat, lon});
+        static_cast<ScenePoint&>(out) = geo::to_scene(frame, {lat, lon});
+        if (point.Is3D() && std::isfinite(point.getZ()))
+            out.z_m = point.getZ();
         return std::isfinite(out.x_m) && std::isfinite(out.y_m);
     }
 
     void collect(const OGRGeometry& shape, VectorFeature& out) {
         const auto flat = wkbFlatten(shape.getGeometryType());
-        ScenePoint p;
         if (flat == wkbPoint) {
-            if (!shape.IsEmpty() && place(shape.toPoint()->getX(), shape.toPoint()->getY(), p))
+            VectorPlace p;
+            if (!shape.IsEmpty() && place(*shape.toPoint(), p))
                 out.points.push_back(p);
         } else if (flat == wkbLineString || flat == wkbLinearRing) {
             const auto& line = *static_cast<const OGRSimpleCurve*>(&shape);
-            std::vector<ScenePoint> places;
-            for (int i = 0; i < line.getNumPoints(); ++i)
-                if (place(line.getX(i), line.getY(i), p))
+            std::vector<VectorPlace> places;
+            for (int i = 0; i < line.getNumPoints(); ++i) {
+                OGRPoint point;
+                line.getPoint(i, &point);
+                if (VectorPlace p; place(point, p))
                     places.push_back(p);
+            }
             if (places.size() > 1)
                 out.lines.push_back(std::move(places));
         } else if (flat == wkbPolygon) {
@@ -81,6 +87,7 @@ std::vector<VectorFeature> read_vectors(const std::filesystem::path& path,
                                         const geo::Frame& frame) {
     register_drivers();
     GdalMessages messages;
+    const ThreadOptions options({{"GPX_ELE_AS_25D", "YES"}}); // else <ele> is no height
     std::error_code failed;
     if (!std::filesystem::exists(path, failed))
         throw Error(path.string() + ": no such file", "check the path");
@@ -92,6 +99,10 @@ std::vector<VectorFeature> read_vectors(const std::filesystem::path& path,
                     "give a GeoPackage, GeoJSON, GPX or shapefile (try ogrinfo on it)");
     std::vector<VectorFeature> out;
     for (auto* layer : ds->GetLayers()) {
+        const std::string layer_name = layer->GetName();
+        if (ds->GetDriver() && std::string(ds->GetDriver()->GetDescription()) == "GPX" &&
+            (layer_name == "route_points" || layer_name == "track_points"))
+            continue;
         OGRSpatialReference from;
         if (const auto* declared = layer->GetSpatialRef())
             from = *declared;

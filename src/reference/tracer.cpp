@@ -10,10 +10,12 @@
 #include "reference/parts.hpp"
 #include "reference/photo.hpp"
 #include "reference/sky.hpp"
+#include "reference/space_lines.hpp"
 #include "reference/sunlight.hpp"
 #include "reference/surface.hpp"
 #include "reference/waves.hpp"
 #include "scene/curvature.hpp"
+#include "scene/space_lines.hpp"
 
 #include <cmath>
 #include <limits>
@@ -63,7 +65,8 @@ public:
           longest_path_m_(scene::greatest_path_m(scene.optics, view.settings)),
           lift_m_(scene::shadow_lift_m(scene.ground)),
           bottom_m_(scene::block_bottom_m(scene.ground)),
-          bend_per_m_(scene::is_curved(scene, view) ? scene::bend_per_m : 0.0) {
+          bend_per_m_(scene::is_curved(scene, view) ? scene::bend_per_m : 0.0),
+          sign_irradiance_(settings_.space_lines_lit ? 0.0 : scene::sign_irradiance(scene, view)) {
         half_tangent_.y = std::tan(camera_.fov_deg * pi / 360.0);
         half_tangent_.x = half_tangent_.y * settings_.width_px / settings_.height_px;
         pixel_rad_ = 2.0 * half_tangent_.y / settings_.height_px;
@@ -518,13 +521,86 @@ private:
         return colour * irradiance / pi;
     }
 
+    /// Lays the first of lines in space over what a part brings to the eye.
+    /// @param lake  none: the part is in the air
+    glm::dvec3 behind_lines(glm::dvec3 radiance, glm::dvec3 origin, glm::dvec3 direction,
+                            double end_m, double before_m, double water_before_m,
+                            const Lake* lake) const {
+        if (scene_.space_strokes.empty() ||
+            settings_.drape_on == (lake ? scene::DrapeOn::dry : scene::DrapeOn::flooded))
+            return radiance;
+        const glm::dvec3 eye = origin - before_m * direction;
+        const double bend = lake ? 0.0 : bend_per_m_;
+        double at = infinity, cover = 0.0;
+        for (const scene::SpaceStroke& s : scene_.space_strokes) {
+            const auto from_eye = [&](glm::dvec3 p) {
+                const glm::dvec2 away(p - origin);
+                p.z -= bend * glm::dot(away, away);
+                return p - eye;
+            };
+            const StrokeSeen seen = near_stroke(direction, from_eye(s.from), from_eye(s.to));
+            const double t = seen.t - before_m;
+            if (!(t > 0.0 && t < end_m))
+                continue;
+            const double here = stroke_cover(seen.apart_rad / pixel_rad_, double(s.width_px));
+            if (here > cover || (here == cover && cover > 0.0 && t < at)) {
+                cover = here;
+                at = t;
+            }
+        }
+        if (cover == 0.0)
+            return radiance;
+        const glm::dvec3 albedo(0.85, 0.18, 0.05), luminance(0.2126, 0.7152, 0.0722);
+        const double up = std::max(light_.sun_direction.z, 0.0);
+        if (sign_irradiance_ > 0.0)
+            return glm::mix(radiance, albedo / pi * sign_irradiance_, cover);
+        if (!lake) {
+            const glm::dvec3 mark =
+                albedo / pi * 0.5 * (light_.sky_irradiance + up * light_.sun_irradiance);
+            return glm::mix(radiance, through_air(origin, direction, at, mark), cover);
+        }
+        const double start_depth = std::max(lake->level_m - origin.z, 0.0),
+                     depth = std::max(start_depth - direction.z * at, 0.0),
+                     way = water_before_m + at;
+        glm::dvec3 irradiance = 0.5 * light_.sky_irradiance * medium_.sky_entering() *
+                                medium_.transmittance(sky_slant * depth + way);
+        if (up > 0.0)
+            irradiance += 0.5 * sun_below_.z * sun_irradiance_below_ *
+                          medium_.transmittance(depth / sun_below_.z + way);
+        if (settings_.dive_light_cd > 0.0 && before_m == 0.0)
+            irradiance += 0.5 * lamp_intensity(direction) /
+                          (at * at + scene::lamp_beside_m * scene::lamp_beside_m) *
+                          medium_.transmittance(2.0 * at);
+        cover *= std::clamp(glm::dot(luminance, medium_.image_transmittance(way)) /
+                                std::max(glm::dot(luminance, medium_.transmittance(way)), 1e-9),
+                            0.0, 1.0);
+        const glm::dvec3 mark =
+            albedo / pi * irradiance +
+            light_.sky_irradiance * medium_.sky_entering() * sky_slant *
+                medium_.path_radiance(sky_slant, start_depth, -direction.z, water_before_m, at) +
+            (up > 0.0 ? sun_irradiance_below_ *
+                            sun_scattered(origin, direction, start_depth, water_before_m, at)
+                      : glm::dvec3(0.0));
+        return glm::mix(radiance, mark, cover);
+    }
+
     /// Radiance arriving at `origin` from `direction`, both in the air.
     /// @param lot  none: no water surface is looked for
     glm::dvec3 in_air(glm::dvec3 origin, glm::dvec3 direction, double before_m, double* distance,
                       std::optional<Lot> lot) const {
-        const auto met = meet_in_air(origin, direction, lot.has_value());
+        double end_m = infinity;
+        const glm::dvec3 radiance = in_clear_air(origin, direction, before_m, end_m, lot);
         if (distance)
-            *distance = met ? met->hit.t : infinity;
+            *distance = end_m;
+        return behind_lines(radiance, origin, direction, end_m, before_m, 0.0, nullptr);
+    }
+
+    /// The same without lines in space.
+    /// @param end_m  on return: to what was met
+    glm::dvec3 in_clear_air(glm::dvec3 origin, glm::dvec3 direction, double before_m, double& end_m,
+                            std::optional<Lot> lot) const {
+        const auto met = meet_in_air(origin, direction, lot.has_value());
+        end_m = met ? met->hit.t : infinity;
         if (!met)
             return sky(direction);
         const Hit& hit = met->hit;
@@ -575,6 +651,17 @@ private:
     /// The same under water, but as it arrives at the eye after `water_before_m` more of the water.
     glm::dvec3 in_water(glm::dvec3 origin, glm::dvec3 direction, const Lake& lake, double before_m,
                         double water_before_m, double* distance, std::optional<Lot> lot) const {
+        double end_m = infinity;
+        const glm::dvec3 radiance =
+            in_clear_water(origin, direction, lake, before_m, water_before_m, distance, end_m, lot);
+        return behind_lines(radiance, origin, direction, end_m, before_m, water_before_m, &lake);
+    }
+
+    /// The same without lines in space.
+    /// @param end_m  on return: to where the part ended, also in the midst of the water
+    glm::dvec3 in_clear_water(glm::dvec3 origin, glm::dvec3 direction, const Lake& lake,
+                              double before_m, double water_before_m, double* distance,
+                              double& end_m, std::optional<Lot> lot) const {
         const double depth = std::max(lake.level_m - origin.z, 0.0);
         double to_surface = direction.z > 1e-6 ? depth / direction.z : infinity;
         std::optional<Hit> hit;
@@ -594,6 +681,7 @@ private:
         }
         const double reach = std::min(to_surface, longest_path_m_);
         const double length = hit ? hit->t : reach;
+        end_m = length;
         const bool at_surface = !hit && to_surface <= longest_path_m_;
         if (distance)
             *distance = hit || at_surface ? length : infinity;
@@ -674,7 +762,7 @@ private:
     const scene::Camera& camera_;
     double index_;
     Medium medium_;
-    double longest_path_m_, lift_m_, bottom_m_, bend_per_m_;
+    double longest_path_m_, lift_m_, bottom_m_, bend_per_m_, sign_irradiance_;
     glm::dvec2 half_tangent_{0.0};
     double pixel_rad_ = 0.0;
     glm::dvec3 sun_below_{0, 0, 1}, sun_irradiance_below_{0.0};

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/text.hpp"
 #include "scene/curvature.hpp"
+#include "scene/space_lines.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +48,9 @@ std::string Renderer::shade_defines() const {
     return std::string(hazy_ ? "#define TARN_HAZE 1\n" : "") +
            (whole_sky_ ? "#define TARN_WHOLE_SKY 1\n" : "") +
            (shadowed_ ? "#define TARN_LAND_SHADOW 1\n" : "") +
-           (mapped_ ? "#define TARN_MAP 1\n" : "") + (lamp_ ? "#define TARN_LAMP 1\n" : "");
+           (mapped_ ? "#define TARN_MAP 1\n" : "") +
+           (space_lines_.id() != 0 ? "#define TARN_SPACE_LINES 1\n" : "") +
+           (lamp_ ? "#define TARN_LAMP 1\n" : "");
 }
 
 // What every pass that follows a path must know: scenes that are small, cameras that are in one
@@ -271,7 +274,8 @@ void Renderer::prepare(const scene::View& view) {
             std::abs(p.z - *water_here) < settings.port_m + lift_m_;
     block_.diver = {float(settings.port_m),
                     float(settings.dive_light_cd * scene::irradiance_per_lux),
-                    float(scene::lamp_beside_m), 0.0f};
+                    float(scene::lamp_beside_m),
+                    settings.space_lines_lit ? 0.0f : float(scene::sign_irradiance(scene_, view))};
     lamp_ = settings.dive_light_cd > 0.0;
     locate_camera();
 
@@ -487,6 +491,8 @@ void Renderer::draw_medium() {
         glMemoryBarrier(images);
     }
     begins("shade");
+    if (space_lines_.id() != 0)
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_SPACE_LINES, space_lines_.id());
     (wavy_ones ? wavy_ones->shade : *calm_shade_).use();
     glDispatchCompute(across, down, 1);
     begins("end");

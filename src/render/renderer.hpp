@@ -79,8 +79,11 @@ public:
     /// were
     void scene_changed(bool settled = true);
 
-    /// The same for what is draped alone.
-    void map_changed() { upload_map(); }
+    /// The same for what is draped, or hangs in space, alone. Then prepare().
+    void map_changed() {
+        upload_map();
+        upload_space_lines();
+    }
 
     /// Cone maps made elsewhere, on a thread of their own say, in place of those that the next
     /// prepare() would wait for.
@@ -164,6 +167,7 @@ private:
     std::string sunlight_defines() const;
     void upload_heights();
     void upload_map();
+    void upload_space_lines();
     void prepare_sunlight(const scene::View& view, bool moved);
     void prepare_land_shadow(const scene::View& view);
     void use_walk(scene::Walk walk, double setting);
@@ -188,7 +192,7 @@ private:
     gpu::Texture2D heights_, sky_, soft_sky_, ortho_, radiance_, distance_, beams_, overlay_;
     gpu::Texture2D
         hits_[3]; ///< ends of the parts of the paths of one tile (shaders/lib/parts.glsl)
-    gpu::Buffer view_buffer_, lakes_;
+    gpu::Buffer view_buffer_, lakes_, space_lines_;
     std::map<std::string, gpu::ComputeProgram> shade_; ///< by what is defined
     const gpu::ComputeProgram* calm_shade_ = nullptr;  ///< of them, for this picture
     std::vector<glm::vec3> sky_made_;                  ///< as it is on the GPU

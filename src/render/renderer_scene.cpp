@@ -1,6 +1,7 @@
 // What the renderer keeps of the scene on the GPU: heights, maps, water's colours, land's shadow.
 #include "core/parallel.hpp"
 #include "render/renderer.hpp"
+#include "render/stroke_tree.hpp"
 #include "scene/land_shadow.hpp"
 #include "scene/water_colour.hpp"
 
@@ -99,9 +100,19 @@ void Renderer::upload_map() {
             *texture = gpu::Texture2D(GL_R8, 1, 1, 1, gpu::Filter::linear, "no map");
 }
 
+// No program asks for lines in space where there are none.
+void Renderer::upload_space_lines() {
+    space_lines_ = {};
+    if (scene_.space_strokes.empty())
+        return;
+    const std::vector<glm::uvec4> packed = pack_strokes(scene_.ground, scene_.space_strokes);
+    space_lines_ = gpu::Buffer(packed.size() * sizeof packed[0], packed.data());
+}
+
 void Renderer::scene_changed(bool settled) {
     upload_heights();
     upload_map();
+    upload_space_lines();
     bounds_.scene_changed();
     if (settled) {
         packed_ = {}; // kept while somebody drags: fresh memory takes as long as the copy
@@ -126,6 +137,7 @@ void Renderer::upload_scene() {
     upload_heights();
     packed_ = {};
     upload_map();
+    upload_space_lines();
     block_.walk = {FieldBounds::root_level(size), FieldBounds::cone_shift, 0, 0};
     block_.grid = {float(size.cols), float(size.rows), float(ground.spacing_m), 0.0f};
     block_.forward.w = float(scene::block_bottom_m(ground) - ground.offset_m);

@@ -48,6 +48,19 @@ struct Drape {
     std::vector<std::uint8_t> nearness; ///< 255 on a line
 };
 
+/// A piece of a line in space, or a point where both ends are one; a few pixels wide wherever it
+/// is.
+struct SpaceStroke {
+    glm::dvec3 from{0.0}, to{0.0}; ///< scene metres
+    float width_px = 2.4f;
+};
+
+/// A name beside a place.
+struct PlaceLabel {
+    glm::dvec3 place{0.0};
+    std::string text;
+};
+
 struct Scene {
     geo::Frame frame;
     Heightfield ground, water;     ///< same size, spacing and place
@@ -60,6 +73,8 @@ struct Scene {
     ImportReport report;
     std::optional<ExposedBed> exposed_bed;
     std::optional<Drape> drape;
+    std::vector<SpaceStroke> space_strokes; ///< lines and points in air and water
+    std::vector<PlaceLabel> labels;         ///< of what is draped and what is in space
     /// Of the ground, a value for each cell (core/safety_radius.hpp); made when needed if it is not
     /// here.
     std::optional<Grid<std::uint8_t>> safety_radii;

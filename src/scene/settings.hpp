@@ -97,6 +97,8 @@ struct RenderSettings {
     std::optional<double> depth_colours_m;  ///< water is a sheet in the colours of its depth, the
                                             ///< darkest at this one, [.01, 1e5]
     DrapeOn drape_on = DrapeOn::all;        ///< of layers
+    bool space_lines_lit = false; ///< lines in space are things that light falls on and water
+                                  ///< hides; else signs, as bright wherever they are
     Walk walk = Walk::cone_map;
     bool coarse_far_land = false; ///< land's blocks narrower than a pixel are met at their tops; of
                                   ///< cone_map only, whose file says how far that is off

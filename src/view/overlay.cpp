@@ -3,6 +3,7 @@
 #include "core/text.hpp"
 #include "geo/frame.hpp"
 #include "scene/curvature.hpp"
+#include "scene/labels.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -195,29 +196,13 @@ void draw_overlay(Session& session, PanelState& state, float scale) {
 }
 
 std::vector<Label> find_labels(const Session& session, const Screen& screen) {
-    std::vector<Label> out;
     const ImVec2 size = ImGui::GetIO().DisplaySize;
-    const scene::Camera camera = camera_of(session.flight.pose());
-    int asked = 0;
-    for (const Layer& layer : session.layers)
-        for (const Layer::Point& point : layer.points) {
-            if (point.label.empty() || ++asked > 200) // each asks the GPU
-                continue;
-            const double x = point.place.x, y = point.place.y;
-            const bool flooded = session.scene.water_level_m(x, y).has_value();
-            if (session.view.settings.drape_on ==
-                (flooded ? scene::DrapeOn::dry : scene::DrapeOn::flooded))
-                continue;
-            const glm::dvec3 place(x, y,
-                                   std::max(session.scene.water_level_m(x, y).value_or(-1e9),
-                                            session.scene.ground.elevation_m(x, y)));
-            const auto at = on_screen(camera, place, size);
-            if (!at || at->x < 0 || at->y < 0 || at->x >= size.x || at->y >= size.y)
-                continue;
-            const double met = double(screen.distance_at(at->x / size.x, at->y / size.y));
-            if (!(met < 0.97 * glm::length(place - camera.position))) // not behind something
-                out.push_back({at->x, at->y, point.label});
-        }
+    std::vector<Label> out;
+    for (const scene::ShownLabel& label :
+         scene::shown_labels(session.scene, camera_of(session.flight.pose()),
+                             double(size.x) / double(size.y), session.view.settings.drape_on,
+                             [&](double x, double y) { return double(screen.distance_at(x, y)); }))
+        out.push_back({size.x * float(label.x), size.y * float(label.y), label.text});
     return out;
 }
 

@@ -405,12 +405,26 @@ void measure_panel(Session& session, PanelState& state, Requests& asked) {
                              sizeof state.layer);
     ImGui::SameLine();
     if (ImGui::Button("add") && state.layer[0] != '\0')
-        session.add_layer(state.layer);
+        session.add_layer(state.layer, state.layer_in_space);
+    ImGui::Checkbox("in space, at its own heights", &state.layer_in_space);
+    const bool in_space = std::any_of(session.layers.begin(), session.layers.end(),
+                                      [](const auto& layer) { return layer.heights.has_value(); });
+    if (in_space) {
+        static const char* from[] = {"datum", "level", "ground"};
+        const std::string now = session.option("layers-3d-heights", "datum");
+        if (ImGui::BeginCombo("heights from", now.c_str())) {
+            for (const char* words : from)
+                if (ImGui::Selectable(words, now == words))
+                    session.count_heights_from(words);
+            ImGui::EndCombo();
+        }
+    }
     if (!session.layers.empty() &&
         choice(session, "show", "layers-on", {"all", "dry", "flooded"}, "all"))
         asked.view_changed = true;
     for (std::size_t i = 0; i < session.layers.size(); ++i) {
-        ImGui::BulletText("%s", session.layers[i].name.c_str());
+        ImGui::BulletText("%s%s", session.layers[i].name.c_str(),
+                          session.layers[i].heights ? " (in space)" : "");
         ImGui::SameLine();
         if (ImGui::SmallButton(text("remove##", i).c_str())) {
             session.remove_layer(i);

@@ -29,6 +29,7 @@ struct PanelState {
     double frames_per_s = 0.0;
     std::string device;
     char sun_place[64] = "", bookmark[64] = "", layer[512] = "", open[512] = "";
+    bool layer_in_space = false;
     std::vector<std::pair<std::string, double>> pass_ms;
     std::optional<Reading> pointer;
     bool pointer_known = false; ///< else nothing has been drawn there yet

@@ -3,6 +3,7 @@
 /// files and the command line, the window does not.
 #include "core/image.hpp"
 #include "core/progress.hpp"
+#include "scene/map_layers.hpp"
 #include "scene/settings.hpp"
 #include "view/options.hpp"
 
@@ -41,17 +42,6 @@ public:
     virtual void fill(double level_m, scene::Scene& scene, bool shore) = 0;
 };
 
-/// Lines, outlines and points from a file, in scene metres.
-struct Layer {
-    std::string name;
-    std::vector<std::vector<glm::dvec2>> lines; ///< outlines come back to their start
-    struct Point {
-        glm::dvec2 place;
-        std::string label;
-    };
-    std::vector<Point> points;
-};
-
 /// How a view is drawn within a budget of error, and why.
 struct Planned {
     Options options;                  ///< that draw so
@@ -77,7 +67,7 @@ struct Services {
                               const Options&)>
         save_picture;
     /// @throws tarn::Error
-    std::function<Layer(const std::string& path)> read_layer;
+    std::function<scene::MapLayer(const std::string& path)> read_layer;
     /// What plans keep to instead of an error, where the window was opened with that.
     std::optional<double> frame_time_ms;
     /// Chooses what a view needs for a mean relative radiance error, or for that time; takes as

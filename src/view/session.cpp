@@ -2,7 +2,6 @@
 
 #include "core/error.hpp"
 #include "core/text.hpp"
-#include "scene/drape.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -11,6 +10,16 @@
 #include <cstdlib>
 
 namespace tarn::view {
+
+namespace {
+
+scene::HeightsFrom heights_from(const std::string& words) {
+    return words == "level"    ? scene::HeightsFrom::level
+           : words == "ground" ? scene::HeightsFrom::ground
+                               : scene::HeightsFrom::datum;
+}
+
+} // namespace
 
 Session::Session(scene::Scene& s, const Services& v, Options options)
     : scene(s), services(v), usual_optics_(s.optics), view(v.make_view(options, s)),
@@ -21,8 +30,11 @@ Session::Session(scene::Scene& s, const Services& v, Options options)
         if (lake.id == int(number("lake", 1)))
             level_m_ = lake.level_m;
     picture_samples = int(number("samples", picture_samples));
-    for (const std::string& path : split(option("layers"), ':'))
+    const std::string draped = option("layers"), in_space = option("layers-3d");
+    for (const std::string& path : split(draped, ':'))
         add_layer(path);
+    for (const std::string& path : split(in_space, ':'))
+        add_layer(path, true);
 }
 
 void Session::open_levels() {
@@ -183,6 +195,8 @@ void Session::set_level(double level_m, bool done) {
         last_fill_ms_ =
             1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         level_m_ = level_m;
+        if (!layers.empty())
+            scene::hang_layers(scene, layers); // labels lie on the water, lines may hang from it
         figures_ = levels_->figures(level_m);
         scene_changed_ = true;
         options_["level"] = fixed(level_m, 3);
@@ -224,13 +238,20 @@ void Session::go_to(const std::string& name) {
             flight.fly_to(pose_of(c.camera));
 }
 
-void Session::add_layer(const std::string& path) {
+void Session::add_layer(const std::string& path, bool in_space) {
     try {
         layers.push_back(services.read_layer(path));
         layer_paths_.push_back(path);
-        drape_layers();
-        say(text("layer ", layers.back().name, ": ", layers.back().lines.size(), " lines, ",
-                 layers.back().points.size(), " points"));
+        if (in_space)
+            layers.back().heights = heights_from(option("layers-3d-heights"));
+        try {
+            lay_layers();
+        } catch (const std::exception&) {
+            remove_layer(layers.size() - 1);
+            throw;
+        }
+        say(text("layer ", layers.back().name, ": ", layers.back().shapes.lines.size(), " lines, ",
+                 layers.back().shapes.points.size(), " points"));
     } catch (const std::exception& error) {
         complain(error.what());
     }
@@ -239,29 +260,43 @@ void Session::add_layer(const std::string& path) {
 void Session::remove_layer(std::size_t index) {
     layers.erase(layers.begin() + std::ptrdiff_t(index));
     layer_paths_.erase(layer_paths_.begin() + std::ptrdiff_t(index));
-    drape_layers();
+    lay_layers();
 }
 
-void Session::drape_layers() {
-    std::vector<std::vector<glm::dvec2>> lines;
-    std::vector<glm::dvec2> points;
-    std::string paths;
-    for (const Layer& layer : layers) {
-        lines.insert(lines.end(), layer.lines.begin(), layer.lines.end());
-        for (const Layer::Point& point : layer.points)
-            points.push_back(point.place);
+void Session::count_heights_from(const std::string& words) {
+    const std::vector<scene::MapLayer> before = layers;
+    for (scene::MapLayer& layer : layers)
+        if (layer.heights)
+            layer.heights = heights_from(words);
+    try {
+        hang_layers();
+        options_["layers-3d-heights"] = words;
+    } catch (const Error& error) {
+        layers = before;
+        complain(error.what());
     }
-    for (const std::string& path : layer_paths_)
-        paths += (paths.empty() ? "" : ":") + path;
-    scene.drape.reset();
-    if (!lines.empty() || !points.empty())
-        scene.drape = scene::make_drape(scene.ground, lines, points);
-    if (!layers.empty() && !scene.drape)
+}
+
+void Session::lay_layers() {
+    const bool draped = scene::drape_layers(scene, layers);
+    hang_layers();
+    if (!draped)
         complain("nothing of the layers lies on the scene");
-    if (paths.empty())
-        options_.erase("layers");
-    else
-        options_["layers"] = paths;
+    for (const bool in_space : {false, true}) {
+        std::string paths;
+        for (std::size_t i = 0; i < layers.size(); ++i)
+            if (layers[i].heights.has_value() == in_space)
+                paths += (paths.empty() ? "" : ":") + layer_paths_[i];
+        const char* name = in_space ? "layers-3d" : "layers";
+        if (paths.empty())
+            options_.erase(name);
+        else
+            options_[name] = paths;
+    }
+}
+
+void Session::hang_layers() {
+    scene::hang_layers(scene, layers);
     map_changed_ = true;
 }
 

@@ -118,9 +118,12 @@ public:
     enum class Measuring { off, line, polygon } measuring = Measuring::off;
     std::vector<glm::dvec3> measured;
 
-    std::vector<Layer> layers;
-    void add_layer(const std::string& path);
+    std::vector<scene::MapLayer> layers;
+    /// @param in_space  at heights of its own, counted as the option layers-3d-heights says
+    void add_layer(const std::string& path, bool in_space = false);
     void remove_layer(std::size_t index);
+    /// @param words  of layers-3d-heights
+    void count_heights_from(const std::string& words);
     /// What is draped is not what the renderer has. Ask once.
     bool take_map_changed() { return std::exchange(map_changed_, false); }
 
@@ -130,7 +133,8 @@ public:
 
 private:
     void keep_bookmarks();
-    void drape_layers();
+    void lay_layers();
+    void hang_layers();
 
     Options options_;
     std::optional<SolarTime> playing_; ///< finer than the option can say

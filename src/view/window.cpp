@@ -422,7 +422,7 @@ void App::dropped(int count, const char** paths) {
             next_ = path.string();
             glfwSetWindowShouldClose(window_.get(), GLFW_TRUE);
         } else {
-            session_.add_layer(path.string());
+            session_.add_layer(path.string(), state_.layer_in_space);
         }
     }
 }

@@ -11,6 +11,7 @@
 #include <iomanip>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -308,6 +309,79 @@ TEST(Layers, AreDrawnWhereTheyLie) {
     expect_one_line("tarn render " + scene + " --layers " + (t / "far.geojson").string() + " -o " +
                         (t / "x.png").string(),
                     1, "nothing of them lies on the scene");
+}
+
+// A pole of a GeoJSON file and a GPX track, both with heights, over the lake; names beside points.
+TEST(Layers, HangInSpaceAtTheirOwnHeights) {
+    const TempFolder t;
+    const std::string scene = shared().scene;
+    const auto lake = nlohmann::json::parse(run("tarn info " + scene + " --json").out)["lakes"][0];
+    const double lat = lake["lat_deg"], lon = lake["lon_deg"];
+    std::ofstream(t / "track.gpx")
+        << std::setprecision(12) << "<gpx version=\"1.1\" creator=\"test\"><wpt lat=\"" << lat
+        << "\" lon=\"" << lon << "\"><ele>14</ele><name>Buoy 7</name></wpt><trk><trkseg>"
+        << "<trkpt lat=\"" << lat << "\" lon=\"" << lon - 0.004 << "\"><ele>14</ele></trkpt>"
+        << "<trkpt lat=\"" << lat << "\" lon=\"" << lon + 0.004 << "\"><ele>14</ele></trkpt>"
+        << "</trkseg></trk></gpx>";
+    const std::string view = " --camera x=0,y=-150,z=14,heading=0,pitch=0,fov=60 --size 200x200 "
+                             "--exposure 1 --layers-3d " +
+                             (t / "track.gpx").string();
+    // Rows with much red, from the middle.
+    const auto rows = [&](const std::string& more) {
+        const std::string out = (t / "out.png").string();
+        const Outcome o = run("tarn render " + scene + view + more + " -o " + out);
+        EXPECT_EQ(o.code, 0) << o.err;
+        const Picture p = image::read_rgba(out);
+        std::vector<double> found;
+        for (int y = 0; y < 200; ++y) {
+            int reds = 0;
+            for (int x = 0; x < 90; ++x) { // left of the buoy
+                const std::uint8_t* c = &p.bytes[std::size_t(y * 200 + x) * 4];
+                reds += c[0] > c[1] + 40 && c[0] > c[2] + 40;
+            }
+            if (reds > 40)
+                found.push_back(y + 0.5 - 100.0);
+        }
+        return found;
+    };
+    // At 14 m, as high as the camera; 14 m over the level of 10 m, 150 m away: 200 / 2 / tan 30 x
+    // 10 / 150 pixels up.
+    for (const auto& [more, up_px] :
+         {std::pair("", 0.0), std::pair(" --layers-3d-heights level", 173.2 * 10.0 / 150.0),
+          std::pair(" --layers-3d-heights level --level 12", 173.2 * 12.0 / 150.0)}) {
+        const auto found = rows(std::string(more) + " --layers-on dry --no-reflection");
+        ASSERT_FALSE(found.empty()) << more;
+        const double middle =
+            std::accumulate(found.begin(), found.end(), 0.0) / double(found.size());
+        EXPECT_NEAR(middle, -up_px, 1.0) << more;
+        EXPECT_LE(found.size(), 4u) << more;
+    }
+    EXPECT_GE(rows("").size(), 2u);                    // itself and in the water, mirrored
+    EXPECT_TRUE(rows(" --layers-on flooded").empty()); // all of it is in the air
+    // A name is written where the buoy is.
+    const auto words = [&](const std::string& more) {
+        const std::string out = (t / "out.png").string();
+        EXPECT_EQ(run("tarn render " + scene + view + more + " -o " + out).code, 0);
+        const Picture p = image::read_rgba(out);
+        int white = 0;
+        for (int y = 80; y < 110; ++y)
+            for (int x = 100; x < 180; ++x) {
+                const std::uint8_t* c = &p.bytes[std::size_t(y * 200 + x) * 4];
+                white += c[0] > 240 && c[1] > 240 && c[2] > 240;
+            }
+        return white;
+    };
+    EXPECT_GT(words(" --labels"), 20);
+    EXPECT_EQ(words(""), 0);
+    // Without heights nothing can count from the datum.
+    std::ofstream(t / "flat.geojson")
+        << std::setprecision(12)
+        << "{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"Point\","
+        << "\"coordinates\":[" << lon << "," << lat << "]}}";
+    const std::string flat = "tarn render " + scene + " --size 64x64 --layers-3d " +
+                             (t / "flat.geojson").string() + " -o " + (t / "x.png").string();
+    expect_one_line(flat, 1, "flat.geojson: a vertex has no height");
+    EXPECT_EQ(run(flat + " --layers-3d-heights level").code, 0);
 }
 
 TEST(Record, WritesPicturesOnceAndKeepsThem) {

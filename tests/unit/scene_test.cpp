@@ -1,11 +1,13 @@
 #include "core/error.hpp"
 #include "scene/camera_path.hpp"
+#include "scene/curvature.hpp"
 #include "scene/drape.hpp"
 #include "scene/environment.hpp"
 #include "scene/lighting.hpp"
 #include "scene/presets.hpp"
 #include "scene/samples.hpp"
 #include "scene/settings.hpp"
+#include "scene/space_lines.hpp"
 
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -29,6 +31,59 @@ TEST(Camera, LookAgreesWithCompassAndPlumbLine) {
     EXPECT_THROW(look_along({0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 50), Error);
     EXPECT_THROW(look_along({0, 0, 0}, {0, 0, 0}, {0, 0, 1}, 50), Error);
     EXPECT_THROW(look_along({0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 180), Error);
+}
+
+TEST(SpaceLines, HeightsCountFromDatumLevelOrGround) {
+    const Scene s = bowl(129);
+    const double ground = s.ground.elevation_m(100.0, 0.0);
+    EXPECT_EQ(place_in_space(s, {100, 0, 7}, HeightsFrom::datum).z, 7.0);
+    EXPECT_NEAR(place_in_space(s, {100, 0, -2}, HeightsFrom::level).z, 8.0, 1e-3);
+    EXPECT_NEAR(place_in_space(s, {450, 0, -2}, HeightsFrom::level).z, 8.0, 1e-3); // on dry land
+    EXPECT_NEAR(place_in_space(s, {100, 0, 2}, HeightsFrom::ground).z, ground + 2.0, 1e-9);
+    EXPECT_NEAR(place_in_space(s, {100, 0, std::nan("")}, HeightsFrom::ground).z, ground, 1e-9);
+    EXPECT_THROW(place_in_space(s, {100, 0, std::nan("")}, HeightsFrom::datum), Error);
+    // Far outside the ground's border counts.
+    EXPECT_TRUE(std::isfinite(place_in_space(s, {1e6, 0, 2}, HeightsFrom::ground).z));
+}
+
+TEST(SpaceLines, ASightingObeysSnell) {
+    const Scene s = bowl(257);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> even(0.0, 1.0);
+    const auto lean = [](const glm::dvec3& v) { return std::hypot(v.x, v.y) / glm::length(v); };
+    int seen_ones = 0;
+    for (int i = 0; i < 400; ++i) {
+        const double r = 150.0 * std::sqrt(even(random)), a = 6.283 * even(random);
+        const glm::dvec3 in_water(r * std::cos(a), r * std::sin(a), 6.5 + 3.0 * even(random)),
+            in_air(80.0 * even(random), 80.0 * even(random), 10.5 + 20.0 * even(random));
+        for (const bool dives : {false, true}) {
+            const auto seen = sighting_of(s, dives ? in_water : in_air, dives ? in_air : in_water);
+            if (!seen) // behind the bed
+                continue;
+            ++seen_ones;
+            EXPECT_TRUE(seen->through_water);
+            const glm::dvec3 eye = dives ? in_water : in_air, other = dives ? in_air : in_water;
+            glm::dvec3 crossing = eye + seen->distance_m * seen->towards;
+            // What the Earth's curvature takes off at its distance is put back.
+            const double away = std::hypot(crossing.x - eye.x, crossing.y - eye.y);
+            if (!dives)
+                crossing.z += bend_per_m * away * away;
+            EXPECT_NEAR(crossing.z, 10.0, 1e-5);
+            const double here = lean(crossing - eye), there = lean(other - crossing);
+            EXPECT_NEAR(here * (dives ? 1.333 : 1.0), there * (dives ? 1.0 : 1.333), 1e-6);
+            const glm::dvec3 upright = glm::cross(crossing - eye, other - crossing);
+            EXPECT_NEAR(upright.z, 0.0, 1e-3 * glm::length(other - eye)); // in one plane
+        }
+    }
+    EXPECT_GT(seen_ones, 300);
+    // Straight down water looks three quarters as deep; here it is the direction alone that counts.
+    const auto down = sighting_of(s, {0, 0, 20}, {0, 0, 5});
+    ASSERT_TRUE(down);
+    EXPECT_NEAR(down->towards.z, -1.0, 1e-9);
+    EXPECT_NEAR(down->distance_m, 10.0, 1e-3);
+    EXPECT_FALSE(sighting_of(s, {0, 0, 20}, {0, 0, -1}));   // in the bed
+    EXPECT_FALSE(sighting_of(s, {600, 0, 20}, {0, 0, 12})); // beyond the rim
+    EXPECT_TRUE(sighting_of(s, {450, 0, 40}, {-450, 0, 40}));
 }
 
 TEST(Sky, UniformSkyHasIrradiancePiTimesItsRadiance) {

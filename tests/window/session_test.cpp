@@ -32,6 +32,7 @@ public:
         return out;
     }
     void fill(double level_m, scene::Scene& scene, bool shore) override {
+        scene.water.offset_m += level_m - scene.lakes[0].level_m; // where it is wet it moves
         scene.lakes[0].level_m = level_m;
         shore_counted = shore;
     }
@@ -66,10 +67,11 @@ struct Desk {
                 throw Error("the disk is full");
             kept = int(cameras.size());
         };
-        services.read_layer = [](const std::string& path) -> view::Layer {
-            if (path != "track.gpx")
+        services.read_layer = [](const std::string& path) -> scene::MapLayer {
+            if (path != "track.gpx" && path != "flat.gpx")
                 throw Error(path + ": no such file");
-            return {"track", {{{-50, 0}, {50, 0}}}, {{{0, 10}, "buoy"}}};
+            const double z = path == "flat.gpx" ? std::nan("") : 2.0;
+            return {"track", {{{{-50, 0, z}, {50, 0, z}}}, {{0, 10, z}}}, {"buoy"}};
         };
     }
 };
@@ -205,6 +207,41 @@ TEST(Session, LayersAreDrapedAndNamed) {
     session.remove_layer(0);
     EXPECT_FALSE(desk.scene.drape);
     EXPECT_EQ(session.all_options().count("layers"), 0u);
+}
+
+TEST(Session, LayersInSpaceHangWhereTheyShould) {
+    Desk desk;
+    Session session(desk.scene, desk.services, {{"layers-3d", "track.gpx"}});
+    const double level = desk.scene.lakes.front().level_m;
+    ASSERT_EQ(desk.scene.space_strokes.size(), 2u); // a line and a point
+    EXPECT_FALSE(desk.scene.drape);
+    EXPECT_EQ(desk.scene.space_strokes[0].from.z, 2.0);
+    EXPECT_EQ(session.all_options().at("layers-3d"), "track.gpx");
+    session.count_heights_from("level");
+    EXPECT_EQ(desk.scene.space_strokes[0].from.z, level + 2.0);
+    EXPECT_EQ(desk.scene.labels.at(0).place.z, level + 2.0);
+    EXPECT_EQ(session.all_options().at("layers-3d-heights"), "level");
+    // They go with the water.
+    wait_for_levels(session);
+    session.set_level(level - 1.0, true);
+    EXPECT_NEAR(desk.scene.space_strokes[0].from.z, session.level_m() + 2.0, 1e-2);
+    // Along the ground in pieces as long as a cell.
+    session.count_heights_from("ground");
+    EXPECT_GT(desk.scene.space_strokes.size(), 10u);
+    for (const scene::SpaceStroke& s : desk.scene.space_strokes)
+        EXPECT_NEAR(s.from.z, desk.scene.ground.elevation_m(s.from.x, s.from.y) + 2.0, 1e-9);
+    // Without heights none can count from the datum; nothing changes.
+    session.messages.clear();
+    session.add_layer("flat.gpx", true); // at the ground
+    ASSERT_EQ(session.layers.size(), 2u);
+    session.count_heights_from("datum");
+    EXPECT_EQ(session.option("layers-3d-heights"), "ground");
+    ASSERT_FALSE(session.messages.empty());
+    EXPECT_NE(session.messages.back().text.find("no height"), std::string::npos);
+    session.remove_layer(1);
+    session.count_heights_from("datum");
+    session.add_layer("flat.gpx", true);
+    EXPECT_EQ(session.layers.size(), 1u);
 }
 
 TEST(Session, SolarTimeGoesThereAndBack) {
