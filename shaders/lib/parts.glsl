@@ -77,6 +77,9 @@ struct Part {
 // pixel_of — the picture's pixel that an invocation of the tile draws.
 ivec2 pixel_of(ViewBlock view, ivec2 local) { return local + view.tile.xy + (local >> 3) * view.walk.zw; }
 
+// lot_of — the pixel that chances are drawn for: those of a strip are the whole picture's.
+ivec2 lot_of(ViewBlock view, ivec2 pixel) { return pixel + ivec2(0, int(view.offset.y)); }
+
 #ifdef TARN_PORT
 // A camera at the surface looks through the dome of a port, half of which may be under water: rays begin on it, each
 // in what is there. Such a picture is drawn twice, once for each medium.

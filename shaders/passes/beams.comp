@@ -15,7 +15,7 @@ void main() {
         return;
     float reach = 0.0;
 #ifdef TARN_WALK_HAS_BEAMS
-    vec2 middle = vec2(8 * tile) + 4.0;
+    vec2 middle = vec2(8 * tile) + 4.0 + vec2(0.0, floor(view.offset.y)); // with the rows above a strip
     vec3 direction = pixel_direction(view.forward.xyz, view.right.xyz, view.up.xyz, vec2(view.right.w, view.up.w),
                                      middle * view.inverse_size.zw);
     // Half the tile's diagonal in a picture plane at distance 1: unit vectors are nearer to each other.

@@ -30,7 +30,7 @@ void main() {
         return;
 #ifdef TARN_WAVES
     WaveSurface met = unpack_surface(imageLoad(surfaces, local));
-    Surface surface = Surface(slope_of_part(met, number, first.in_water, pixel_of(view, local), view.offset.z,
+    Surface surface = Surface(slope_of_part(met, number, first.in_water, lot_of(view, pixel_of(view, local)), view.offset.z,
                                             direction_after(view, first, first_end.t), view.optics.x),
                               surface_level(heights, view, first, first_end));
 #else

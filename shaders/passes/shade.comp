@@ -436,7 +436,7 @@ void main() {
 #endif
         for (int number = 1; number < 3; ++number) {
 #ifdef TARN_WAVES
-            Surface surface = Surface(slope_of_part(met, number, first.in_water, pixel, view.offset.z,
+            Surface surface = Surface(slope_of_part(met, number, first.in_water, lot_of(view, pixel), view.offset.z,
                                                     direction_after(view, first, first_end.t), view.optics.x), level);
 #endif
             Part part = split_part(view, first, first_end, surface, number);

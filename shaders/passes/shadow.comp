@@ -33,7 +33,7 @@ void main() {
             return;
 #ifdef TARN_WAVES
         WaveSurface met = unpack_surface(imageLoad(surfaces, local));
-        Surface surface = Surface(slope_of_part(met, number, part.in_water, pixel_of(view, local), view.offset.z,
+        Surface surface = Surface(slope_of_part(met, number, part.in_water, lot_of(view, pixel_of(view, local)), view.offset.z,
                                             direction_after(view, part, first_end.t), view.optics.x),
                               surface_level(heights, view, part, first_end));
 #else

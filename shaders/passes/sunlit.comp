@@ -109,7 +109,7 @@ bool part_of_slot(ivec2 local, int slot, out Part part, out End end, out float b
     if ((end.flags & end_surface) == 0u)
         return false;
     WaveSurface met = unpack_surface(imageLoad(surfaces, local));
-    Surface surface = Surface(slope_of_part(met, number, from_water, pixel_of(view, local), view.offset.z,
+    Surface surface = Surface(slope_of_part(met, number, from_water, lot_of(view, pixel_of(view, local)), view.offset.z,
                                             direction_after(view, part, end.t), view.optics.x),
                               surface_level(heights, view, part, end));
     before_m = end.t;

@@ -38,7 +38,7 @@ void store_surface(ivec2 local, ivec2 pixel, Part part, End end) {
     vec3 taken;
     vec2 mean = wave_slopes(wave_slope_layers, wave_table, waves, at, footprint, amplitude, taken);
     vec3 to_viewer = (part.in_water ? 1.0 : -1.0) * direction;
-    vec2 lot = draw_slope(pixel, view.offset.z, to_viewer, mean, taken, part.in_water ? 0.0 : 1.0 / view.optics.x, bright);
+    vec2 lot = draw_slope(lot_of(view, pixel), view.offset.z, to_viewer, mean, taken, part.in_water ? 0.0 : 1.0 / view.optics.x, bright);
     imageStore(surfaces, local, pack_surface(WaveSurface(mean, lot, bright, taken)));
 }
 

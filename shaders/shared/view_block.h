@@ -78,7 +78,7 @@ struct ViewBlock {
                           // w: irradiance on lines in space, to be signs; 0: they are lit as things
     vec4 options;         // x: lift of shadow rays [m], y: level of the water the camera is in [m],
                           // z: 1 if that lake's bed is known, w: weight of this sample
-    vec4 offset;          // xy: position inside the pixel, z: index of the sample, w: how far the walk's water is
+    vec4 offset;          // xy: position inside the pixel, and rows of the picture above those that are drawn, z: index of the sample, w: how far the walk's water is
                           // raised above its level, for waves [m]
     uvec4 counts;         // x: width, y: height [px], z: flags, w: lakes
     ivec4 tile;           // xy: first pixel, zw: size of the tile being drawn

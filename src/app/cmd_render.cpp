@@ -57,6 +57,20 @@ void print_measured(render::Renderer& renderer, const scene::View& everything,
               << " ms instead of " << fixed(best.ms, 2) << " ms with reading back\n";
 }
 
+/// Draws a picture that is too large to be held whole.
+void draw_strips(render::Renderer& renderer, scene::View view, int rows,
+                 std::vector<PictureFile>& files, const Progress& progress) {
+    const int height = view.settings.height_px;
+    for (int first = 0; first < height; first += rows) {
+        view.settings.strip = {first, std::min(rows, height - first)};
+        const Image strip = renderer.draw(view, [&](double share) {
+            progress.report((first + share * view.settings.strip->rows) / height, "rendering");
+        });
+        for (PictureFile& file : files)
+            file.add(strip);
+    }
+}
+
 int run_render(Words& words, scene_files::OptionList options) {
     check_outputs(words.outputs);
     words.plan.budget.validate();
@@ -75,8 +89,22 @@ int run_render(Words& words, scene_files::OptionList options) {
         view.settings.walk == scene::Walk::safety_radius)
         scene.safety_radii = scene_files::load_safety_radii(words.scene, scene);
     const Progress progress = console_progress();
+    const bool in_strips = strip_rows(words.picture, view.settings) < view.settings.height_px;
+    if (in_strips && (words.reference || !words.against.empty() || words.measure_plan))
+        throw Error("a picture in strips cannot be drawn with --reference, --against or --measure",
+                    "choose a smaller --size, of 33 million pixels at most, and no --strip-rows");
     Image picture;
     std::string device;
+    std::vector<PictureFile> files;
+    const auto record = [&] {
+        return Record{.scene = words.scene,
+                      .options = options,
+                      .command = command_line(),
+                      .device = device,
+                      .time = describe_time(words.view, scene),
+                      .exposure = {},
+                      .more = {}};
+    };
     const auto start = std::chrono::steady_clock::now();
     const auto seconds = [&start] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -106,24 +134,28 @@ int run_render(Words& words, scene_files::OptionList options) {
                 print_measured(renderer, everything, view);
         }
         setup_s = seconds();
-        picture = renderer.draw(view, [&](double share) { progress.report(share, "rendering"); });
+        if (in_strips) {
+            const Image overview = renderer.draw(scene::overview_of(view));
+            for (const std::string& output : words.outputs)
+                files.emplace_back(output, words.picture, scene, view, record(), overview);
+            draw_strips(renderer, view, strip_rows(words.picture, view.settings), files, progress);
+        } else {
+            picture =
+                renderer.draw(view, [&](double share) { progress.report(share, "rendering"); });
+        }
         end_progress();
         for (const std::string& note : renderer.wave_notes())
             spdlog::info("waves: {}", note);
     }
     const double total_s = seconds();
     end_progress();
+    for (PictureFile& file : files)
+        file.finish();
     for (const std::string& output : words.outputs) {
-        write_picture(output, words.picture, picture, scene, view,
-                      {.scene = words.scene,
-                       .options = options,
-                       .command = command_line(),
-                       .device = device,
-                       .time = describe_time(words.view, scene),
-                       .exposure = {},
-                       .more = {}});
-        std::cout << "wrote " << output << " (" << picture.width_px << " x " << picture.height_px
-                  << ", " << view.settings.samples
+        if (!in_strips)
+            write_picture(output, words.picture, picture, scene, view, record());
+        std::cout << "wrote " << output << " (" << view.settings.width_px << " x "
+                  << view.settings.height_px << ", " << view.settings.samples
                   << (view.settings.samples == 1 ? " sample" : " samples") << ", "
                   << fixed(total_s - setup_s, 2) << " s after " << fixed(setup_s, 2)
                   << " s of set-up, " << device << ")\n";

@@ -98,6 +98,21 @@ std::string next_picture(const fs::path& folder) {
     throw Error(folder.string() + " is full of pictures", "choose another folder with --pictures");
 }
 
+class PictureOnDisk : public view::SavedPicture {
+public:
+    PictureOnDisk(std::string path, PictureFile file)
+        : path_(std::move(path)), file_(std::move(file)) {}
+    void add(const Image& rows) override { file_.add(rows); }
+    std::string finish() override {
+        file_.finish();
+        return path_;
+    }
+
+private:
+    std::string path_;
+    PictureFile file_;
+};
+
 view::Planned planned_of(const render::Plan& plan) {
     view::Planned out;
     for (const auto& [name, value] : options_of(plan))
@@ -144,22 +159,23 @@ view::Services services_for(const std::string& folder, const scene::Scene& as_im
     out.save_cameras = [folder](const std::vector<scene::NamedCamera>& cameras) {
         scene_files::replace_cameras(folder, cameras);
     };
-    out.save_picture = [named, first, pictures = words.pictures](
-                           const Image& picture, const scene::Scene& scene, const scene::View& view,
-                           const view::Options& options) {
+    out.begin_picture = [named, first, pictures = words.pictures](
+                            const Image& overview, const scene::Scene& scene,
+                            const scene::View& view, const view::Options& options) {
         Parsed parsed(options);
         parsed.picture.sidecar = true;
         const std::string path = next_picture(pictures);
-        write_picture(
-            path, parsed.picture, picture, scene, view,
-            {.scene = named,
-             .options = list_of(options),
-             .command = first + command_of("render", named, list_of(options)) + " -o " + path,
-             .device = "tarn view",
-             .time = describe_time(parsed.view, scene),
-             .exposure = {},
-             .more = {}});
-        return path;
+        return std::make_unique<PictureOnDisk>(
+            path, PictureFile(path, parsed.picture, scene, view,
+                              {.scene = named,
+                               .options = list_of(options),
+                               .command = first + command_of("render", named, list_of(options)) +
+                                          " -o " + path,
+                               .device = "tarn view",
+                               .time = describe_time(parsed.view, scene),
+                               .exposure = {},
+                               .more = {}},
+                              overview));
     };
     if (!words.plan.budget.max_error)
         out.frame_time_ms = words.plan.budget.frame_time_ms;

@@ -37,6 +37,60 @@ std::string describe_waves(const waves::Settings& s) {
     return out;
 }
 
+/// What a picture has met at a place of it, (0, 0) top left to (1, 1) [m].
+double distance_at(const Image& image, double x, double y) {
+    const auto pixel = [](double place, int pixels) {
+        return std::size_t(std::clamp(int(place * pixels), 0, pixels - 1));
+    };
+    return std::abs(
+        double(image.distance_m[pixel(y, image.height_px) * std::size_t(image.width_px) +
+                                pixel(x, image.width_px)]));
+}
+
+/// A bar with place, level, date and scale, to stand below a picture.
+Picture caption_bar(const Image& overview, const scene::Scene& scene, const scene::View& view,
+                    const std::string& time) {
+    const int width_px = view.settings.width_px, height_px = view.settings.height_px;
+    const int size = std::max(12, std::min(width_px / 60, height_px / 24));
+    const int bar = 2 * size;
+    Picture out{.width_px = width_px, .height_px = bar, .channels = 3, .bytes = {}};
+    out.bytes.assign(std::size_t(width_px) * std::size_t(bar) * 3, std::uint8_t(24));
+    const LakeRecord& lake =
+        scene.lake_at_level(scene.water_level_m(view.camera.position.x, view.camera.position.y)
+                                .value_or(scene.lakes.front().level_m));
+    std::string words = (lake.name.empty() ? text(fixed(lake.position.lat_deg, 4), ", ",
+                                                  fixed(lake.position.lon_deg, 4))
+                                           : lake.name) +
+                        "   level " + fixed(lake.level_m, 2) + " m";
+    if (lake.bed == Bed::unknown)
+        words += " (bed unknown)";
+    else if (lake.bed == Bed::estimated)
+        words += " (bed ESTIMATED)";
+    words += "   " + time;
+    const int base = bar / 2 + size / 3;
+    image::draw_text(out, size, base, size, words);
+    // How long a bar is at what the middle of the picture shows: the scale changes over it.
+    const double distance = distance_at(overview, 0.5, 0.5);
+    if (std::isfinite(distance) && distance > 0.0) {
+        const double metre_px =
+            height_px /
+            (2.0 * std::tan(0.5 * view.camera.fov_deg * 3.14159265358979 / 180.0) * distance);
+        const double length = round_length(0.12 * out.width_px / metre_px);
+        const int px = int(std::lround(length * metre_px));
+        const std::string label =
+            length_words(length) + (view.camera.forward.z < -0.999 ? ""
+                                    : distance >= 1000
+                                        ? ", " + fixed(distance / 1000, 1) + " km away"
+                                    : distance >= 10 ? ", " + fixed(distance, 0) + " m away"
+                                                     : ", " + fixed(distance, 1) + " m away");
+        const int right = out.width_px - size, wide = int(0.55 * size * double(label.size()));
+        image::fill_box(out, right - wide - size - px, base - size / 3 - 2, right - wide - size,
+                        base - size / 3 + 2, 235);
+        image::draw_text(out, right - wide, base, size, label);
+    }
+    return out;
+}
+
 } // namespace
 
 double choose_exposure(const std::string& words, const Image& picture, const scene::Scene& scene,
@@ -98,6 +152,9 @@ void add_picture_options(CLI::App& c, PictureWords& w) {
         ->capture_default_str();
     c.add_flag("--caption", w.caption, "below a .png a bar with place, level, date and scale");
     c.add_flag("--labels", w.labels, "names of the layers' points beside them, in a .png");
+    c.add_option("--strip-rows", w.strip_rows,
+                 "draw and write so many rows at a time, a multiple of 8: for little memory; "
+                 "default: all of them up to 33 million pixels, then 16 million pixels");
     c.add_flag("--sidecar", w.sidecar,
                "beside the picture a .json that --settings makes it again from");
 }
@@ -105,7 +162,7 @@ void add_picture_options(CLI::App& c, PictureWords& w) {
 scene_files::OptionList given_options(const CLI::App& c) {
     // Where to write, and what is not about the picture, is another question.
     static const std::vector<std::string> others = {"output",  "settings", "against", "help",
-                                                    "sidecar", "explain",  "measure"};
+                                                    "sidecar", "explain",  "measure", "strip-rows"};
     scene_files::OptionList out;
     for (const CLI::Option* option : c.get_options()) {
         if (option->count() == 0 || option->get_lnames().empty())
@@ -181,70 +238,6 @@ std::string describe_time(const ViewWords& words, const scene::Scene& scene) {
                                                : geo::parse_time(words.time, place));
 }
 
-Picture add_caption(const Picture& picture, const Image& image, const scene::Scene& scene,
-                    const scene::View& view, const std::string& time) {
-    const int size = std::max(12, std::min(picture.width_px / 60, picture.height_px / 24));
-    const int bar = 2 * size;
-    Picture out = picture;
-    out.height_px += bar;
-    out.bytes.resize(std::size_t(out.width_px) * std::size_t(out.height_px) *
-                         std::size_t(out.channels),
-                     std::uint8_t(24));
-    const LakeRecord& lake =
-        scene.lake_at_level(scene.water_level_m(view.camera.position.x, view.camera.position.y)
-                                .value_or(scene.lakes.front().level_m));
-    std::string words = (lake.name.empty() ? text(fixed(lake.position.lat_deg, 4), ", ",
-                                                  fixed(lake.position.lon_deg, 4))
-                                           : lake.name) +
-                        "   level " + fixed(lake.level_m, 2) + " m";
-    if (lake.bed == Bed::unknown)
-        words += " (bed unknown)";
-    else if (lake.bed == Bed::estimated)
-        words += " (bed ESTIMATED)";
-    words += "   " + time;
-    const int base = out.height_px - bar / 2 + size / 3;
-    image::draw_text(out, size, base, size, words);
-    // How long a bar is at what the middle of the picture shows: the scale changes over it.
-    const std::size_t middle = std::size_t(image.height_px / 2) * std::size_t(image.width_px) +
-                               std::size_t(image.width_px / 2);
-    const double distance = std::abs(double(image.distance_m[middle]));
-    if (std::isfinite(distance) && distance > 0.0) {
-        const double metre_px =
-            image.height_px /
-            (2.0 * std::tan(0.5 * view.camera.fov_deg * 3.14159265358979 / 180.0) * distance);
-        const double length = round_length(0.12 * image.width_px / metre_px);
-        const int px = int(std::lround(length * metre_px));
-        const std::string label =
-            length_words(length) + (view.camera.forward.z < -0.999 ? ""
-                                    : distance >= 1000
-                                        ? ", " + fixed(distance / 1000, 1) + " km away"
-                                    : distance >= 10 ? ", " + fixed(distance, 0) + " m away"
-                                                     : ", " + fixed(distance, 1) + " m away");
-        const int right = out.width_px - size, wide = int(0.55 * size * double(label.size()));
-        image::fill_box(out, right - wide - size - px, base - size / 3 - 2, right - wide - size,
-                        base - size / 3 + 2, 235);
-        image::draw_text(out, right - wide, base, size, label);
-    }
-    return out;
-}
-
-void add_labels(Picture& picture, const Image& image, const scene::Scene& scene,
-                const scene::View& view) {
-    const int size = std::max(11, picture.height_px / 45);
-    const auto pixel = [](double place, int pixels) {
-        return std::clamp(int(place * pixels), 0, pixels - 1);
-    };
-    for (const scene::ShownLabel& label : scene::shown_labels(
-             scene, view.camera, double(image.width_px) / image.height_px, view.settings.drape_on,
-             [&](double x, double y) {
-                 const std::size_t row = std::size_t(pixel(y, image.height_px)),
-                                   col = std::size_t(pixel(x, image.width_px));
-                 return std::abs(double(image.distance_m[row * std::size_t(image.width_px) + col]));
-             }))
-        image::draw_text(picture, pixel(label.x, picture.width_px) + size / 2,
-                         pixel(label.y, picture.height_px) - size / 3, size, label.text);
-}
-
 void check_outputs(const std::vector<std::string>& outputs) {
     for (const std::string& output : outputs) {
         const std::string extension = std::filesystem::path(output).extension().string();
@@ -257,32 +250,76 @@ void check_outputs(const std::vector<std::string>& outputs) {
     }
 }
 
+PictureFile::PictureFile(const std::string& output, const PictureWords& words,
+                         const scene::Scene& scene, const scene::View& view, const Record& record,
+                         const Image& overview)
+    : output_(output), words_(words), scene_folder_(record.scene), options_(record.options),
+      height_px_(view.settings.height_px) {
+    if (record.exposure && words.tone != "none")
+        options_ = with_option(options_, "exposure", text(*record.exposure));
+    const std::string command = record.command.empty()
+                                    ? command_of("render", record.scene, options_) + " -o " + output
+                                    : record.command;
+    metadata_ = describe(scene, view, record.device, command);
+    metadata_.insert(record.more.begin(), record.more.end());
+    const int width_px = view.settings.width_px;
+    if (std::filesystem::path(output).extension() == ".exr") {
+        file_.emplace(image::RowWriter::exr(output, width_px, height_px_, metadata_));
+        return;
+    }
+    exposure_ = record.exposure.value_or(
+        words.tone == "none" ? 1.0 : choose_exposure(words.exposure, overview, scene, view));
+    if (words.labels)
+        labels_ = scene::shown_labels(
+            scene, view.camera, double(width_px) / height_px_, view.settings.drape_on,
+            [&](double x, double y) { return distance_at(overview, x, y); });
+    if (words.caption)
+        caption_ = caption_bar(overview, scene, view, record.time);
+    file_.emplace(
+        image::RowWriter::png(output, width_px, height_px_ + caption_.height_px, 3, metadata_));
+}
+
+void PictureFile::add(const Image& rows) {
+    if (std::filesystem::path(output_).extension() == ".exr") {
+        file_->add(rows);
+        return;
+    }
+    Picture out = develop(words_, rows, exposure_);
+    const int size = std::max(11, height_px_ / 45);
+    for (const scene::ShownLabel& label : labels_) {
+        const int y = int(label.y * height_px_) - size / 3 - rows_;
+        if (y > -2 * size && y < out.height_px + 2 * size)
+            image::draw_text(out, int(label.x * out.width_px) + size / 2, y, size, label.text);
+    }
+    file_->add(out);
+    rows_ += rows.height_px;
+}
+
+void PictureFile::finish() {
+    if (caption_.height_px > 0)
+        file_->add(caption_);
+    file_->finish();
+    if (words_.sidecar)
+        write_beside(std::filesystem::path(output_).replace_extension(".json").string(),
+                     scene_files::sidecar_json(std::filesystem::path(output_).filename().string(),
+                                               scene_folder_, options_, metadata_));
+}
+
+int strip_rows(const PictureWords& words, const scene::RenderSettings& settings) {
+    if (words.strip_rows % 8 != 0 || words.strip_rows < 0)
+        throw Error(text("--strip-rows is ", words.strip_rows, ", must be a multiple of 8"));
+    return words.strip_rows > 0 ? std::min(words.strip_rows, settings.height_px)
+                                : scene::strip_rows(settings);
+}
+
 void write_picture(const std::string& output, const PictureWords& words, const Image& picture,
                    const scene::Scene& scene, const scene::View& view, const Record& record) {
-    scene_files::OptionList options = record.options;
-    if (record.exposure && words.tone != "none")
-        options = with_option(options, "exposure", text(*record.exposure));
-    const std::string command = record.command.empty()
-                                    ? command_of("render", record.scene, options) + " -o " + output
-                                    : record.command;
-    auto metadata = describe(scene, view, record.device, command);
-    metadata.insert(record.more.begin(), record.more.end());
-    if (std::filesystem::path(output).extension() == ".exr") {
-        image::write_exr(output, picture, metadata);
-    } else {
-        const double exposure = record.exposure.value_or(
-            words.tone == "none" ? 1.0 : choose_exposure(words.exposure, picture, scene, view));
-        Picture out = develop(words, picture, exposure);
-        if (words.labels)
-            add_labels(out, picture, scene, view);
-        if (words.caption)
-            out = add_caption(out, picture, scene, view, record.time);
-        image::write_png(output, out, metadata);
-    }
-    if (words.sidecar)
-        write_beside(std::filesystem::path(output).replace_extension(".json").string(),
-                     scene_files::sidecar_json(std::filesystem::path(output).filename().string(),
-                                               record.scene, options, metadata));
+    scene::View same = view;
+    same.settings.width_px = picture.width_px;
+    same.settings.height_px = picture.height_px;
+    PictureFile file(output, words, scene, same, record, picture);
+    file.add(picture);
+    file.finish();
 }
 
 } // namespace tarn::app

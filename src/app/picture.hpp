@@ -3,6 +3,8 @@
 ///                    written beside it.
 #include "app/view_options.hpp"
 #include "image/files.hpp"
+#include "scene/labels.hpp"
+#include "scene/strips.hpp"
 #include "scene_files/sidecar.hpp"
 
 #include <CLI/App.hpp>
@@ -13,6 +15,7 @@ namespace tarn::app {
 struct PictureWords {
     std::string exposure = "auto", tone = "eye";
     bool caption = false, labels = false, sidecar = false;
+    int strip_rows = 0; ///< 0: chosen
 };
 
 /// Adds the options of PictureWords to a command.
@@ -37,15 +40,6 @@ image::Metadata describe(const scene::Scene& scene, const scene::View& view,
 
 /// When the sun stands as the words say: "2026-06-21T15:00:00Z", or its place.
 std::string describe_time(const ViewWords& words, const scene::Scene& scene);
-
-/// Below the picture a bar with place, level, date and scale.
-Picture add_caption(const Picture& picture, const Image& image, const scene::Scene& scene,
-                    const scene::View& view, const std::string& time);
-
-/// Writes the names of the layers' points beside them, where the picture shows them.
-/// @param image  that the picture was developed from
-void add_labels(Picture& picture, const Image& image, const scene::Scene& scene,
-                const scene::View& view);
 
 /// Picture for the eye.
 /// @param exposure  factor on radiance
@@ -79,8 +73,40 @@ std::string short_sum(const std::string& text);
 /// Changes when a file that an option names changes: sizes and times of them.
 std::string files_mark(const scene_files::OptionList& options);
 
-/// Writes a picture, .png or .exr, and what the words ask for beside it.
-/// @throws tarn::Error  if a file cannot be written
+/// A picture, .png or .exr, that is written from its first row down, with what the words ask for
+/// beside it. Without finish() nothing is left of it.
+class PictureFile {
+public:
+    /// @param view      of the whole picture
+    /// @param overview  the picture itself, or a smaller one of the same view: what exposure, scale
+    ///                  and labels go by
+    /// @throws tarn::Error  if the file cannot be begun
+    PictureFile(const std::string& output, const PictureWords& words, const scene::Scene& scene,
+                const scene::View& view, const Record& record, const Image& overview);
+
+    /// The next rows. @throws tarn::Error
+    void add(const Image& rows);
+    /// @throws tarn::Error
+    void finish();
+
+private:
+    std::string output_;
+    PictureWords words_;
+    std::string scene_folder_;
+    scene_files::OptionList options_;
+    image::Metadata metadata_;
+    std::optional<image::RowWriter> file_;
+    double exposure_ = 1.0;
+    int height_px_ = 0, rows_ = 0; ///< of the picture, and those that are there
+    std::vector<scene::ShownLabel> labels_;
+    Picture caption_; ///< the bar below the picture; may be empty
+};
+
+/// Rows of the strips that a picture is drawn in: all of them, where it is held whole.
+/// @throws tarn::Error  if the words ask for what is no multiple of 8
+int strip_rows(const PictureWords& words, const scene::RenderSettings& settings);
+
+/// Writes a whole picture. @throws tarn::Error  if a file cannot be written
 void write_picture(const std::string& output, const PictureWords& words, const Image& picture,
                    const scene::Scene& scene, const scene::View& view, const Record& record);
 

@@ -153,6 +153,7 @@ std::vector<IntersectionResult> compare_methods(const scene::Scene& scene, const
                              .refraction = false,
                              .earth_curvature = false,
                              .ground_albedo = {},
+                             .strip = {},
                              .contours_m = {},
                              .depth_contours_m = {},
                              .depth_colours_m = {}};

@@ -16,49 +16,47 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Writes through a temporary name in the same folder; the last step is one rename.
-template <class Write>
-void write_beside(const fs::path& path, Write write) {
+fs::path partial_name(const fs::path& path) {
     static std::atomic<int> counter{0};
     fs::path partial = path;
     partial.replace_filename("." + path.stem().string() + ".partial-" + std::to_string(::getpid()) +
                              "-" + std::to_string(counter++) + path.extension().string());
-    try {
-        write(partial);
-        std::error_code failed;
-        fs::rename(partial, path, failed);
-        if (failed)
-            throw Error(path.string() + ": cannot be written (" + failed.message() + ")",
-                        "check the folder and its permissions");
-    } catch (...) {
-        std::error_code ignored;
-        fs::remove(partial, ignored);
-        throw;
-    }
+    return partial;
 }
 
-/// Encodes in memory and writes the bytes itself: the PNG writer does not notice a full disk.
-void write_image(const fs::path& path, OIIO::ImageSpec spec, OIIO::TypeDesc type, const void* data,
-                 const Metadata& metadata) {
-    for (const auto& [key, value] : metadata)
-        spec.attribute(key, value);
-    auto out = OIIO::ImageOutput::create(path.string());
-    OIIO::Filesystem::IOVecOutput encoded;
-    if (!out || !out->set_ioproxy(&encoded) || !out->open(path.string(), spec) ||
-        !out->write_image(type, data) || !out->close())
-        throw Error("the picture cannot be encoded (" + (out ? out->geterror() : OIIO::geterror()) +
-                        ")",
-                    "choose a smaller picture");
-    std::ofstream file(path, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(encoded.buffer().data()),
-               static_cast<std::streamsize>(encoded.buffer().size()));
-    file.close();
-    if (!file) {
-        const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-        throw Error("cannot write into " + folder.string(),
-                    "check the folder, its permissions and the free space");
+/// Where encoders write to. They do not notice a full disk; this does.
+class WatchedFile : public OIIO::Filesystem::IOProxy {
+public:
+    explicit WatchedFile(const fs::path& path)
+        : IOProxy(path.string(), Write), file_(path, std::ios::binary | std::ios::trunc) {}
+    const char* proxytype() const override { return "watched file"; }
+    std::size_t write(const void* data, std::size_t bytes) override {
+        file_.write(static_cast<const char*>(data), std::streamsize(bytes));
+        m_pos += std::int64_t(bytes);
+        return file_ ? bytes : 0;
     }
-}
+    std::size_t pwrite(const void* data, std::size_t bytes, std::int64_t at) override {
+        file_.seekp(at);
+        file_.write(static_cast<const char*>(data), std::streamsize(bytes));
+        file_.seekp(m_pos);
+        return file_ ? bytes : 0;
+    }
+    bool seek(std::int64_t at) override {
+        m_pos = at;
+        file_.seekp(at);
+        return bool(file_);
+    }
+    void flush() const override {}
+    /// @return whether all of it is on the disk
+    bool close_file() {
+        file_.close();
+        return bool(file_);
+    }
+    bool good() const { return bool(file_); }
+
+private:
+    std::ofstream file_;
+};
 
 std::unique_ptr<OIIO::ImageInput> open(const fs::path& path) {
     auto in = OIIO::ImageInput::open(path.string());
@@ -85,31 +83,113 @@ std::unique_ptr<OIIO::ImageInput> open(const fs::path& path) {
 
 } // namespace
 
-void write_png(const fs::path& path, const Picture& picture, const Metadata& metadata) {
-    OIIO::ImageSpec spec(picture.width_px, picture.height_px, picture.channels,
-                         OIIO::TypeDesc::UINT8);
+struct RowWriter::File {
+    fs::path path, partial;
+    OIIO::ImageSpec spec;
+    WatchedFile disk;
+    std::unique_ptr<OIIO::ImageOutput> out;
+    int rows = 0; ///< written
+    bool finished = false;
+
+    File(const fs::path& p, const OIIO::ImageSpec& s)
+        : path(p), partial(partial_name(p)), spec(s), disk(partial) {
+        out = OIIO::ImageOutput::create(partial.string());
+        if (!disk.good() || !out || !out->set_ioproxy(&disk) || !out->open(partial.string(), spec))
+            fail();
+    }
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+    ~File() {
+        if (finished)
+            return;
+        out.reset(); // it may still write
+        std::error_code ignored;
+        fs::remove(partial, ignored);
+    }
+
+    [[noreturn]] void fail() {
+        if (!disk.good()) {
+            const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+            throw Error("cannot write into " + folder.string(),
+                        "check the folder, its permissions and the free space");
+        }
+        throw Error("the picture cannot be encoded (" + (out ? out->geterror() : OIIO::geterror()) +
+                        ")",
+                    "choose a smaller picture");
+    }
+
+    void add(int count, OIIO::TypeDesc type, const void* data) {
+        if (!out->write_scanlines(rows, rows + count, 0, type, data) || !disk.good())
+            fail();
+        rows += count;
+    }
+};
+
+RowWriter::RowWriter(std::unique_ptr<File> file) : file_(std::move(file)) {}
+RowWriter::RowWriter(RowWriter&&) noexcept = default;
+RowWriter::~RowWriter() = default;
+
+RowWriter RowWriter::png(const fs::path& path, int width_px, int height_px, int channels,
+                         const Metadata& metadata) {
+    OIIO::ImageSpec spec(width_px, height_px, channels, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
     spec.attribute("png:compressionLevel", 6);
-    write_beside(path, [&](const fs::path& partial) {
-        write_image(partial, spec, OIIO::TypeDesc::UINT8, picture.bytes.data(), metadata);
-    });
+    for (const auto& [key, value] : metadata)
+        spec.attribute(key, value);
+    return RowWriter(std::make_unique<File>(path, spec));
 }
 
-void write_exr(const fs::path& path, const Image& image, const Metadata& metadata) {
-    OIIO::ImageSpec spec(image.width_px, image.height_px, 4, OIIO::TypeDesc::FLOAT);
+RowWriter RowWriter::exr(const fs::path& path, int width_px, int height_px,
+                         const Metadata& metadata) {
+    OIIO::ImageSpec spec(width_px, height_px, 4, OIIO::TypeDesc::FLOAT);
     spec.channelnames = {"R", "G", "B", "Z"};
     spec.z_channel = 3;
     spec.attribute("compression", "zip");
     spec.attribute("oiio:ColorSpace", "Linear");
-    std::vector<float> values(4 * image.radiance.size());
-    for (std::size_t i = 0; i < image.radiance.size(); ++i) {
+    for (const auto& [key, value] : metadata)
+        spec.attribute(key, value);
+    return RowWriter(std::make_unique<File>(path, spec));
+}
+
+void RowWriter::add(const Picture& rows) {
+    file_->add(rows.height_px, OIIO::TypeDesc::UINT8, rows.bytes.data());
+}
+
+void RowWriter::add(const Image& rows) {
+    std::vector<float> values(4 * rows.radiance.size());
+    for (std::size_t i = 0; i < rows.radiance.size(); ++i) {
         for (int k = 0; k < 3; ++k)
-            values[4 * i + std::size_t(k)] = image.radiance[i][k];
-        values[4 * i + 3] = image.distance_m[i];
+            values[4 * i + std::size_t(k)] = rows.radiance[i][k];
+        values[4 * i + 3] = rows.distance_m[i];
     }
-    write_beside(path, [&](const fs::path& partial) {
-        write_image(partial, spec, OIIO::TypeDesc::FLOAT, values.data(), metadata);
-    });
+    file_->add(rows.height_px, OIIO::TypeDesc::FLOAT, values.data());
+}
+
+void RowWriter::finish() {
+    File& f = *file_;
+    if (f.rows != f.spec.height)
+        throw Error(text(f.path.string(), ": ", f.rows, " of ", f.spec.height, " rows were drawn"));
+    if (!f.out->close() || !f.disk.close_file())
+        f.fail();
+    std::error_code failed;
+    fs::rename(f.partial, f.path, failed);
+    if (failed)
+        throw Error(f.path.string() + ": cannot be written (" + failed.message() + ")",
+                    "check the folder and its permissions");
+    f.finished = true;
+}
+
+void write_png(const fs::path& path, const Picture& picture, const Metadata& metadata) {
+    RowWriter file =
+        RowWriter::png(path, picture.width_px, picture.height_px, picture.channels, metadata);
+    file.add(picture);
+    file.finish();
+}
+
+void write_exr(const fs::path& path, const Image& image, const Metadata& metadata) {
+    RowWriter file = RowWriter::exr(path, image.width_px, image.height_px, metadata);
+    file.add(image);
+    file.finish();
 }
 
 Image read_exr(const fs::path& path) {

@@ -7,12 +7,39 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 
 namespace tarn::image {
 
 /// Text entries of a file: PNG tEXt chunks, EXR attributes.
 using Metadata = std::map<std::string, std::string>;
+
+/// A picture that is written from its first row down, for those too large to be held whole. Without
+/// finish() nothing is left of it.
+class RowWriter {
+public:
+    /// @throws tarn::Error  naming the file, if it cannot be begun; so do the others
+    static RowWriter png(const std::filesystem::path& path, int width_px, int height_px,
+                         int channels, const Metadata& metadata);
+    /// As write_exr() writes it.
+    static RowWriter exr(const std::filesystem::path& path, int width_px, int height_px,
+                         const Metadata& metadata);
+    RowWriter(RowWriter&&) noexcept;
+    ~RowWriter();
+
+    /// The next rows of a .png.
+    void add(const Picture& rows);
+    /// The next rows of an .exr.
+    void add(const Image& rows);
+    /// @throws tarn::Error  if the disk is full, say
+    void finish();
+
+private:
+    struct File;
+    explicit RowWriter(std::unique_ptr<File> file);
+    std::unique_ptr<File> file_;
+};
 
 /// @throws tarn::Error  naming the file, if it cannot be written
 void write_png(const std::filesystem::path& path, const Picture& picture, const Metadata& metadata);

@@ -1,5 +1,6 @@
 #include "reference/tracer.hpp"
 
+#include "core/error.hpp"
 #include "reference/air.hpp"
 #include "reference/camera.hpp"
 #include "reference/caustics.hpp"
@@ -779,6 +780,8 @@ private:
 Image trace(const scene::Scene& scene, const scene::View& view, const Progress& progress) {
     const scene::RenderSettings& settings = view.settings;
     settings.validate();
+    if (settings.strip)
+        throw Error("the reference draws whole pictures, no strips of them");
     const Tracer tracer(scene, view);
     const int w = settings.width_px, h = settings.height_px;
     Image out{.width_px = w, .height_px = h, .radiance = {}, .distance_m = {}};

@@ -207,6 +207,7 @@ void Renderer::prepare(const scene::View& view) {
     const double degree = 3.14159265358979323846 / 180.0;
     const double half = std::tan(0.5 * camera.fov_deg * degree);
     const double pixel_rad = 2.0 * half / settings.height_px;
+    const int rows = settings.rows_drawn();
     const glm::dvec3& p = camera.position;
     const double col = ground.col(p.x), row = ground.row(p.y);
     // Walks count cells in float from beside the camera: up to 2^22 of them they are whole numbers.
@@ -253,10 +254,10 @@ void Renderer::prepare(const scene::View& view) {
     flags |= scene_.ortho ? TARN_FLAG_ORTHO : 0u;
     if (view.overlay) {
         const scene::Overlay& o = *view.overlay;
-        if (o.width_px != settings.width_px || o.height_px != settings.height_px ||
+        if (o.width_px != settings.width_px || o.height_px != rows ||
             o.pixels.size() != std::size_t(o.width_px) * std::size_t(o.height_px))
             throw Error(text("the overlay is ", o.width_px, " x ", o.height_px, ", the picture ",
-                             settings.width_px, " x ", settings.height_px));
+                             settings.width_px, " x ", rows));
         flags |= TARN_FLAG_OVERLAY;
         overlay_ =
             gpu::Texture2D(GL_RGBA32F, o.width_px, o.height_px, 1, gpu::Filter::nearest, "overlay");
@@ -264,7 +265,7 @@ void Renderer::prepare(const scene::View& view) {
         overlay_.bind(TARN_TEXTURE_OVERLAY);
     }
     block_.counts.x = static_cast<std::uint32_t>(settings.width_px);
-    block_.counts.y = static_cast<std::uint32_t>(settings.height_px);
+    block_.counts.y = static_cast<std::uint32_t>(rows);
     block_.inverse_size.z = 1.0f / float(settings.width_px);
     block_.inverse_size.w = 1.0f / float(settings.height_px);
     block_.counts.z = flags;
@@ -290,19 +291,18 @@ void Renderer::prepare(const scene::View& view) {
     }
     if (wavy())
         soft_sky_.bind(TARN_TEXTURE_SKY_SOFT);
-    if (radiance_.width_px() != settings.width_px || radiance_.height_px() != settings.height_px) {
-        radiance_ = gpu::Texture2D(GL_RGBA32F, settings.width_px, settings.height_px, 1,
-                                   gpu::Filter::nearest, "picture");
-        distance_ = gpu::Texture2D(GL_R32F, settings.width_px, settings.height_px, 1,
-                                   gpu::Filter::nearest, "distances");
+    if (radiance_.width_px() != settings.width_px || radiance_.height_px() != rows) {
+        radiance_ =
+            gpu::Texture2D(GL_RGBA32F, settings.width_px, rows, 1, gpu::Filter::nearest, "picture");
+        distance_ =
+            gpu::Texture2D(GL_R32F, settings.width_px, rows, 1, gpu::Filter::nearest, "distances");
     }
-    const int tiles_across = (settings.width_px + 7) / 8, tiles_down = (settings.height_px + 7) / 8;
+    const int tiles_across = (settings.width_px + 7) / 8, tiles_down = (rows + 7) / 8;
     if (beams_.width_px() != tiles_across || beams_.height_px() != tiles_down)
         beams_ =
             gpu::Texture2D(GL_R32F, tiles_across, tiles_down, 1, gpu::Filter::nearest, "beams");
     // As wide as the picture, as high as the limit allows.
-    const int tile_rows =
-        std::min(settings.height_px, std::max(8, tile_pixels / settings.width_px));
+    const int tile_rows = std::min(rows, std::max(8, tile_pixels / settings.width_px));
     if (hits_[0].width_px() != settings.width_px || hits_[0].height_px() != tile_rows)
         for (gpu::Texture2D& hits : hits_)
             hits = gpu::Texture2D(GL_RGBA32UI, settings.width_px, tile_rows, 1,
@@ -341,6 +341,7 @@ void Renderer::prepare(const scene::View& view) {
     ortho_.bind(TARN_TEXTURE_ORTHO);
     beams_.bind(TARN_TEXTURE_BEAMS);
     bind_images();
+    first_row_ = settings.strip ? settings.strip->first_row : 0;
     set_sample(0, 1);
     gpu::check_gl("preparing the picture");
 }
@@ -431,7 +432,7 @@ void Renderer::find_port_heights(double level_m) {
 
 void Renderer::set_sample(int sample, int samples) {
     const glm::dvec2 offset = scene::sample_offset(sample, samples);
-    block_.offset = {float(offset.x), float(offset.y), float(sample), float(lift_m_)};
+    block_.offset = {float(offset.x), float(offset.y + first_row_), float(sample), float(lift_m_)};
     block_.options.w = 1.0f / float(samples);
 }
 

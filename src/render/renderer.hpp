@@ -230,6 +230,7 @@ private:
         packed_; ///< heights as they go up; empty but while a level is dragged
     std::size_t heights_bytes_ = 0;
     int samples_ = 1;
+    int first_row_ = 0; ///< of the picture that the targets hold
     bool rays_in_step_;
 };
 

@@ -20,6 +20,13 @@ void RenderSettings::validate() const {
     require_range("width", width_px, 1, 16384);
     require_range("height", height_px, 1, 16384);
     require_range("samples", samples, 1, 1024);
+    if (strip) {
+        require_range("first row of the strip", strip->first_row, 0, height_px - 1);
+        require_range("rows of the strip", strip->rows, 1, height_px - strip->first_row);
+        if (strip->first_row % 8 != 0)
+            throw Error(
+                text("first row of the strip is ", strip->first_row, ", must be a multiple of 8"));
+    }
     require_range("least transmittance", least_transmittance, 1e-6, 0.5);
     if (caustic_texels != 0)
         require_range("texels of the caustics", caustic_texels, 16, 2048);

@@ -42,6 +42,14 @@ public:
     virtual void fill(double level_m, scene::Scene& scene, bool shore) = 0;
 };
 
+/// A picture being written, from its first row down. Without finish() nothing is left of it.
+class SavedPicture {
+public:
+    virtual ~SavedPicture() = default;
+    virtual void add(const Image& rows) = 0; ///< @throws tarn::Error
+    virtual std::string finish() = 0;        ///< its path. @throws tarn::Error
+};
+
 /// How a view is drawn within a budget of error, and why.
 struct Planned {
     Options options;                  ///< that draw so
@@ -62,10 +70,12 @@ struct Services {
     std::function<std::unique_ptr<LevelControl>()> open_levels;
     /// Keeps cameras in the scene folder. @throws tarn::Error
     std::function<void(const std::vector<scene::NamedCamera>&)> save_cameras;
-    /// Writes a picture and what belongs beside it; returns its path. @throws tarn::Error
-    std::function<std::string(const Image&, const scene::Scene&, const scene::View&,
-                              const Options&)>
-        save_picture;
+    /// Begins to write a picture and what belongs beside it.
+    /// @param overview  the picture itself, or a smaller one (scene/strips.hpp)
+    /// @throws tarn::Error
+    std::function<std::unique_ptr<SavedPicture>(const Image& overview, const scene::Scene&,
+                                                const scene::View&, const Options&)>
+        begin_picture;
     /// @throws tarn::Error
     std::function<scene::MapLayer(const std::string& path)> read_layer;
     /// What plans keep to instead of an error, where the window was opened with that.

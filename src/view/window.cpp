@@ -5,6 +5,7 @@
 #include "gpu/gl.hpp"
 #include "render/renderer.hpp"
 #include "scene/curvature.hpp"
+#include "scene/strips.hpp"
 #include "view/cone_maker.hpp"
 #include "view/desktop.hpp"
 #include "view/overlay.hpp"
@@ -90,6 +91,7 @@ private:
     void keys(double seconds);
     void mouse();
     void read_pointer();
+    bool draw_rows_of(const scene::View& view, double from_share, double to_share);
     void save_picture();
     void plan(int width, int height);
     void log_frame(double began_s, bool first);
@@ -353,32 +355,56 @@ void App::show() {
     glfwSwapBuffers(window_.get());
 }
 
-// In strips, with the window alive in between.
+// All samples of a picture or of a strip of it, by pieces, with the window alive in between.
+// @return whether nobody has stopped it
+bool App::draw_rows_of(const scene::View& view, double from_share, double to_share) {
+    renderer_.prepare(view);
+    const int height = view.settings.rows_drawn(), samples = view.settings.samples;
+    const int rows = std::max(16, 300'000 / view.settings.width_px / 8 * 8);
+    double shown_s = 0.0;
+    for (int sample = 0; sample < samples; ++sample)
+        for (int row = 0; row < height; row += rows) {
+            renderer_.draw_rows(sample, samples, row, std::min(rows, height - row));
+            if (now_s() - shown_s < 0.1)
+                continue;
+            glFinish();
+            shown_s = now_s();
+            const double share = (sample + double(row) / height) / samples;
+            if (!show_progress("drawing the picture", from_share + share * (to_share - from_share)))
+                return false;
+        }
+    return true;
+}
+
 void App::save_picture() {
     try {
         const Options options = session_.picture_options();
-        const scene::View view = session_.services.make_view(options, session_.scene);
-        renderer_.prepare(view);
-        const int height = view.settings.height_px, samples = view.settings.samples;
-        const int rows = std::max(16, 300'000 / view.settings.width_px / 8 * 8);
-        double shown_s = 0.0;
-        for (int sample = 0; sample < samples; ++sample)
-            for (int row = 0; row < height; row += rows) {
-                renderer_.draw_rows(sample, samples, row, std::min(rows, height - row));
-                if (now_s() - shown_s < 0.1)
-                    continue;
-                glFinish();
-                shown_s = now_s();
-                if (!show_progress("drawing the picture",
-                                   (sample + double(row) / height) / samples)) {
-                    session_.say("no picture was saved");
-                    changed_ = true;
-                    return;
-                }
-            }
-        const Image picture = renderer_.read_back();
-        session_.say("wrote " +
-                     session_.services.save_picture(picture, session_.scene, view, options));
+        scene::View view = session_.services.make_view(options, session_.scene);
+        const int height = view.settings.height_px, rows = scene::strip_rows(view.settings);
+        const auto begin = [&](const Image& overview) {
+            return session_.services.begin_picture(overview, session_.scene, view, options);
+        };
+        std::unique_ptr<SavedPicture> file;
+        bool stopped = false;
+        if (rows < height) {
+            stopped = !draw_rows_of(scene::overview_of(view), 0.0, 0.02);
+            if (!stopped)
+                file = begin(renderer_.read_back());
+        }
+        for (int first = 0; first < height && !stopped; first += rows) {
+            scene::View part = view;
+            if (rows < height)
+                part.settings.strip = {first, std::min(rows, height - first)};
+            stopped = !draw_rows_of(part, double(first) / height,
+                                    std::min(1.0, double(first + rows) / height));
+            if (stopped)
+                break;
+            const Image drawn = renderer_.read_back();
+            if (!file)
+                file = begin(drawn);
+            file->add(drawn);
+        }
+        session_.say(stopped ? "no picture was saved" : "wrote " + file->finish());
     } catch (const std::exception& error) {
         session_.complain(error.what());
     }

@@ -1,6 +1,7 @@
 // The program as people and scripts use it.
 #include "dem/gdal_door.hpp"
 #include "dem/write.hpp"
+#include "image/compare.hpp"
 #include "image/files.hpp"
 #include "scene_files/scene_folder.hpp"
 #include "support/bowl_scene.hpp"
@@ -148,6 +149,27 @@ TEST(SceneFolder, OpensInGisProgramsInMetresAtTheRightPlace) {
         EXPECT_STREQ(ds->GetSpatialRef()->GetAuthorityCode(nullptr), "32633");
     }
     EXPECT_TRUE(fs::exists(fs::path(shared().scene) / "preview.png"));
+}
+
+TEST(Render, StripsMakeTheSameFiles) {
+    const TempFolder t;
+    const std::string command = "tarn render " + shared().scene +
+                                " --camera shore --size 120x90 --samples 2 --caption --exposure 1";
+    const auto at = [&](const char* name) { return (t / name).string(); };
+    ASSERT_EQ(run(command + " -o " + at("a.png") + " -o " + at("a.exr")).code, 0);
+    ASSERT_EQ(run(command + " --strip-rows 32 -o " + at("b.png") + " -o " + at("b.exr")).code, 0);
+    const Picture a = image::read_rgba(t / "a.png"), b = image::read_rgba(t / "b.png");
+    ASSERT_EQ(a.height_px, b.height_px);
+    int differ = 0;
+    for (std::size_t i = 0; i < 4 * 120 * 90; ++i) // the bar's scale comes from a smaller picture
+        differ += a.bytes[i] != b.bytes[i];
+    EXPECT_LT(differ, 20);
+    const image::Difference d =
+        image::compare(image::read_exr(t / "a.exr"), image::read_exr(t / "b.exr"));
+    EXPECT_LT(d.p99_relative, 1e-3);
+    expect_one_line(command + " --strip-rows 30 -o " + at("c.png"), 1, "--strip-rows is 30");
+    expect_one_line(command + " --strip-rows 32 --reference -o " + at("c.png"), 1, "in strips");
+    EXPECT_FALSE(std::filesystem::exists(t / "c.png"));
 }
 
 TEST(Render, WritesPicturesThatSayWhereTheyAreFrom) {

@@ -189,6 +189,50 @@ TEST(Picture, LandShadesTheWaterItself) {
 // at 3.912 / c (Koschmieder 1924), with c where the water lets through most; and a little sooner,
 // since what the eye takes together is less clear elsewhere. (Pure water is far clearer in the blue
 // than in the green that counts most.)
+// Strips of a picture are the picture: calm, in waves with nets and shafts of light, and below
+// them.
+TEST(Picture, StripsAreTheWhole) {
+    test_support::context();
+    const scene::Scene scene = scene::bowl(129);
+    render::Renderer renderer(scene);
+    for (const auto& [z, wind] :
+         {std::pair(22.0, 0.0), std::pair(22.0, 4.0), std::pair(4.0, 4.0)}) {
+        scene::View view;
+        view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.4, -0.7, 0.7)));
+        view.camera = scene::look({0, -150, z}, 0, z > 10.0 ? -12 : 25, 60);
+        view.settings = {.width_px = 104, .height_px = 77, .samples = 3};
+        if (wind > 0.0) {
+            view.waves.model = waves::Model::jonswap;
+            view.waves.wind_m_per_s = wind;
+        }
+        const Image whole = renderer.draw(view);
+        Image joined{.width_px = 104, .height_px = 77, .radiance = {}, .distance_m = {}};
+        for (int first = 0; first < 77; first += 24) {
+            view.settings.strip = {first, std::min(24, 77 - first)};
+            const Image part = renderer.draw(view);
+            ASSERT_EQ(part.height_px, view.settings.strip->rows);
+            joined.radiance.insert(joined.radiance.end(), part.radiance.begin(),
+                                   part.radiance.end());
+            joined.distance_m.insert(joined.distance_m.end(), part.distance_m.begin(),
+                                     part.distance_m.end());
+        }
+        const image::Difference d = image::compare(joined, whole);
+        std::printf("z %.0f, wind %.0f: mean %.2e, 99th %.2e\n", z, wind, d.mean_relative,
+                    d.p99_relative);
+        // But for the last digit of a sample's place in its pixel.
+        EXPECT_LT(d.mean_relative, 1e-4);
+        EXPECT_LT(d.p99_relative, 1e-3);
+    }
+    scene::View view;
+    view.camera = scene::look({0, -150, 22}, 0, -12, 60);
+    view.settings.strip = {4, 8};
+    EXPECT_THROW(renderer.draw(view), Error);
+    view.settings.strip = {720, 8};
+    EXPECT_THROW(renderer.draw(view), Error);
+    view.settings.strip = {712, 8};
+    EXPECT_THROW(reference::trace(scene, view, {}), Error);
+}
+
 TEST(Picture, ABlackThingInTheWaterIsSeenAsFarAsItsAttenuationSays) {
     test_support::context();
     for (const char* name : {"pure", "clear lake", "mesotrophic lake", "eutrophic lake",

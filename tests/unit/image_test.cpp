@@ -190,6 +190,49 @@ TEST(Annotate, ResizesAndPastes) {
 }
 
 // What the fuzzer found: 227 bytes that claim six gigabytes.
+TEST(Files, PicturesWrittenByRowsAreTheWholeOnesOrNothing) {
+    const TempFolder temp;
+    Image image{.width_px = 37, .height_px = 29, .radiance = {}, .distance_m = {}};
+    Picture picture{.width_px = 37, .height_px = 29, .channels = 3, .bytes = {}};
+    for (int i = 0; i < 37 * 29; ++i) {
+        image.radiance.emplace_back(0.1f * float(i), 1.0f / float(i + 1), -3.0f);
+        image.distance_m.push_back(float(i * i));
+        for (int k = 0; k < 3; ++k)
+            picture.bytes.push_back(std::uint8_t(i * 7 + k * 31));
+    }
+    const auto part = [](const auto& values, int first, int last, int a_row) {
+        return std::vector(values.begin() + first * a_row, values.begin() + last * a_row);
+    };
+    write_exr(temp / "whole.exr", image, {});
+    write_png(temp / "whole.png", picture, {});
+    for (const bool finish : {false, true}) {
+        RowWriter exr = RowWriter::exr(temp / "rows.exr", 37, 29, {{"tarn:level_m", "7"}});
+        RowWriter png = RowWriter::png(temp / "rows.png", 37, 29, 3, {});
+        for (int first = 0; first < (finish ? 29 : 16); first += 8) {
+            const int last = std::min(first + 8, 29);
+            exr.add(Image{37, last - first, part(image.radiance, first, last, 37),
+                          part(image.distance_m, first, last, 37)});
+            png.add(Picture{37, last - first, 3, part(picture.bytes, first, last, 3 * 37)});
+        }
+        if (finish) {
+            exr.finish();
+            png.finish();
+        } else {
+            EXPECT_THROW(png.finish(), Error); // 13 rows are missing
+        }
+    }
+    const Image read = read_exr(temp / "rows.exr"), whole = read_exr(temp / "whole.exr");
+    EXPECT_EQ(read.radiance, whole.radiance);
+    EXPECT_EQ(read.distance_m, whole.distance_m);
+    EXPECT_EQ(read_metadata(temp / "rows.exr").at("tarn:level_m"), "7");
+    EXPECT_EQ(read_rgba(temp / "rows.png").bytes, read_rgba(temp / "whole.png").bytes);
+    int files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(temp.path()))
+        files += entry.is_regular_file();
+    EXPECT_EQ(files, 4); // nothing of those that were not finished
+    EXPECT_THROW(RowWriter::png(temp / "no/such/folder.png", 4, 4, 3, {}), Error);
+}
+
 TEST(Files, AHeaderThatLiesAboutItsSizeIsRefusedBeforeMemoryIsAskedFor) {
     const std::string path =
         std::string(TARN_SOURCE_DIR) + "/tests/fuzz/seeds/texture/lies_about_its_size.tif";
