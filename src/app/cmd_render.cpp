@@ -9,6 +9,7 @@
 #include "core/text.hpp"
 #include "gpu/context.hpp"
 #include "image/compare.hpp"
+#include "image/error_map.hpp"
 #include "image/files.hpp"
 #include "reference/tracer.hpp"
 #include "render/renderer.hpp"
@@ -29,7 +30,7 @@ struct Words {
     PictureWords picture;
     PlanWords plan;
     bool measure_plan = false;
-    std::string scene, against;
+    std::string scene, against, error_map;
     std::vector<std::string> outputs;
     bool reference = false;
 };
@@ -80,6 +81,9 @@ int run_render(Words& words, scene_files::OptionList options) {
     if (words.plan.budget.asked() && words.reference)
         throw Error("--reference draws everything; it cannot be planned",
                     "leave out --max-error and --frame-time");
+    if (!words.error_map.empty() && words.against.empty())
+        throw Error("--error-map needs something to hold the picture against",
+                    "add --against REFERENCE.exr");
     if (!words.against.empty() && !std::filesystem::exists(words.against))
         throw Error("--against " + words.against + ": no such file",
                     "render it first, with --reference");
@@ -163,6 +167,10 @@ int run_render(Words& words, scene_files::OptionList options) {
     if (!words.against.empty()) {
         const Image other = image::read_exr(words.against);
         const image::Difference d = image::compare(picture, other);
+        if (!words.error_map.empty())
+            image::write_png(words.error_map, image::error_map(picture, other),
+                             {{"Software", text("tarn ", TARN_VERSION)},
+                              {"tarn:command", command_line()}});
         const image::DistanceDifference z =
             image::compare_distances(picture, other, scene.ground.scale_m, 1e-5);
         std::cout << "against " << words.against << ": relative radiance error mean "
@@ -196,6 +204,8 @@ void add_render(CLI::App& app, Run& run) {
     c->add_flag("--reference", words->reference,
                 "by the double-precision CPU tracer: slow, needs no GPU");
     c->add_option("--against", words->against, "print how far the picture is from this .exr");
+    c->add_option("--error-map", words->error_map,
+                  "a .png that shows where: relative error in colours, with a legend");
     c->footer(
         "Examples:\n"
         "  tarn render rotoma -o rotoma.png\n"

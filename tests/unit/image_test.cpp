@@ -2,6 +2,7 @@
 #include "core/error.hpp"
 #include "image/annotate.hpp"
 #include "image/compare.hpp"
+#include "image/error_map.hpp"
 #include "image/files.hpp"
 #include "image/tone.hpp"
 #include "support/files.hpp"
@@ -190,6 +191,30 @@ TEST(Annotate, ResizesAndPastes) {
 }
 
 // What the fuzzer found: 227 bytes that claim six gigabytes.
+TEST(Compare, AnErrorMapShowsWhereAndHowMuch) {
+    Image a{.width_px = 64, .height_px = 32, .radiance = {}, .distance_m = {}};
+    a.radiance.assign(64 * 32, glm::vec3(1.0f));
+    a.distance_m.assign(64 * 32, 1.0f);
+    Image b = a;
+    b.radiance[5] = glm::vec3(1.01f); // 1 %: half way
+    b.radiance[6] = glm::vec3(3.0f);
+    b.radiance[7] = glm::vec3(1.00001f);
+    const Picture map = error_map(b, a);
+    const auto at = [&](int i) {
+        return std::array<int, 3>{map.bytes[std::size_t(3 * i)], map.bytes[std::size_t(3 * i + 1)],
+                                  map.bytes[std::size_t(3 * i + 2)]};
+    };
+    EXPECT_EQ(at(0), (std::array<int, 3>{0, 0, 0}));
+    EXPECT_EQ(at(7), (std::array<int, 3>{0, 0, 0}));
+    EXPECT_EQ(at(6), (std::array<int, 3>{255, 255, 255}));
+    EXPECT_NEAR(at(5)[1], 135, 2);
+    EXPECT_GT(map.height_px, 32); // with a legend
+    Image other = a;
+    other.width_px = 32;
+    other.height_px = 64;
+    EXPECT_THROW(error_map(other, a), Error);
+}
+
 TEST(Files, PicturesWrittenByRowsAreTheWholeOnesOrNothing) {
     const TempFolder temp;
     Image image{.width_px = 37, .height_px = 29, .radiance = {}, .distance_m = {}};
