@@ -142,14 +142,50 @@ float surface_level(sampler2D heights, ViewBlock view, Part first, End end) {
 }
 
 // calm_surface — where there are no waves.
-Surface calm_surface(ViewBlock view, Part first, End end) {
+Surface calm_surface(sampler2D heights, ViewBlock view, Part first, End end) {
+#ifdef TARN_CUT_WATER
+    return Surface(vec2(0.0), surface_level(heights, view, first, end));
+#else
     return Surface(vec2(0.0), first.in_water ? first.level : height_after(view, first, end.t));
+#endif
+}
+
+// at_cut — whether a path has come from outside through the side of the block that the scene is cut out of, and met the
+//          water of a lake that is cut, too: as the pane of an aquarium shows it, but for the glass.
+bool at_cut(ViewBlock view, Part first, End end, float level) {
+#ifdef TARN_CUT_WATER
+    return !first.in_water && height_after(view, first, end.t) < level - 0.01 - 2.0 * view.offset.w;
+#else
+    return false;
+#endif
+}
+
+// cut_normal — unit, outward, of the side of the block that is nearest to where a part ended.
+vec3 cut_normal(ViewBlock view, End end) {
+    vec2 low = vec2(end.cell) + end.inside, high = view.grid.xy - 1.0 - low; // nodes from the sides
+    float nearest = min(min(low.x, low.y), min(high.x, high.y));
+    return nearest == low.x    ? vec3(-1.0, 0.0, 0.0)
+           : nearest == high.x ? vec3(1.0, 0.0, 0.0)
+           : nearest == low.y  ? vec3(0.0, 1.0, 0.0) // rows run southwards
+                               : vec3(0.0, -1.0, 0.0);
+}
+
+// split_at_cut — as split_at_surface, at the side of cut water from outside.
+Split split_at_cut(vec3 direction, vec3 normal, float index, bool schlick) {
+    float cosine = clamp(-dot(direction, normal), 0.0, 1.0), eta = 1.0 / index;
+    float mirror = schlick ? fresnel_schlick(cosine, eta) : fresnel_dielectric(cosine, eta);
+    return Split(direction + 2.0 * cosine * normal, refracted(direction, normal, eta), mirror, (1.0 - mirror) * eta * eta);
 }
 
 // split_part — part 1 or 2 from where part 0 met the surface.
 Part split_part(ViewBlock view, Part first, End end, Surface surface, int number) {
-    Split split = split_at_surface(direction_after(view, first, end.t), normalize(vec3(-surface.slope, 1.0)), view.optics.x,
-                                   first.in_water, (view.counts.z & TARN_FLAG_SCHLICK) != 0u);
+    vec3 direction = direction_after(view, first, end.t);
+    bool schlick = (view.counts.z & TARN_FLAG_SCHLICK) != 0u;
+    Split split;
+    if (at_cut(view, first, end, surface.level))
+        split = split_at_cut(direction, cut_normal(view, end), view.optics.x, schlick);
+    else
+        split = split_at_surface(direction, normalize(vec3(-surface.slope, 1.0)), view.optics.x, first.in_water, schlick);
     bool mirrored = number == 1;
     return Part(vec2(end.cell), vec3(end.inside, height_after(view, first, end.t)),
                 mirrored ? split.reflected : split.refracted, mirrored ? split.mirror : split.through,

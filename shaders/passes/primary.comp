@@ -42,7 +42,7 @@ void store(ivec2 local, ivec2 pixel, Part part, float limit, float overlay_t, bo
     End end = End(limit, ivec2(0), vec2(0.0), 0u);
     if (found) {
         end = End(hit.t, hit.cell, hit.inside, hit.water ? end_surface : end_ground);
-#ifdef TARN_WAVES
+#if defined(TARN_WAVES) || defined(TARN_CUT_WATER)
         float level = texelFetch(heights, hit.cell, 0).g * view.heights.w + view.heights.z - view.offset.w;
 #else
         float level = height_after(view, part, hit.t);

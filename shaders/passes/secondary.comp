@@ -34,7 +34,7 @@ void main() {
                                             direction_after(view, first, first_end.t), view.optics.x),
                               surface_level(heights, view, first, first_end));
 #else
-    Surface surface = calm_surface(view, first, first_end);
+    Surface surface = calm_surface(heights, view, first, first_end);
 #endif
     Part part = split_part(view, first, first_end, surface, number);
     if (!wanted(view, part, number))

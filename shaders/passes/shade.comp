@@ -151,7 +151,11 @@ vec3 lamp_scattered(vec3 direction, float length_m) {
 vec3 ground_radiance(Part part, End end, float path_m, float water_m, Sunlit sunlit) {
     float z = height_after(view, part, end.t);
     vec4 corners = textureGather(heights, (vec2(end.cell) + 1.0) * view.inverse_size.xy, 0) * view.heights.y;
-    if (!part.in_water && z < bilinear(corners, end.inside) - view.options.x) {
+    bool cut = z < bilinear(corners, end.inside) - view.options.x;
+#ifdef TARN_CUT_WATER
+    cut = cut || z < surface_level(heights, view, part, end) - 0.01; // the rim of a bed, not dry land
+#endif
+    if (!part.in_water && cut) {
         // The side of the block that the scene is cut out of.
         vec3 earth = view.look.w < 0.0 ? vec3(0.19, 0.155, 0.115) : vec3(view.look.w);
         float rise = normalize(vec3(-part.direction.xy, 0.5)).z;
@@ -429,10 +433,11 @@ void main() {
         WaveSurface met = unpack_surface(imageLoad(surfaces, local));
         float level = surface_level(heights, view, first, first_end);
         Glitter glitter;
-        if (!first.in_water)
+        bool wavy = !first.in_water && !at_cut(view, first, first_end, level);
+        if (wavy)
             glitter = glitter_of(first, first_end, met);
 #else
-        Surface surface = calm_surface(view, first, first_end);
+        Surface surface = calm_surface(heights, view, first, first_end);
 #endif
         for (int number = 1; number < 3; ++number) {
 #ifdef TARN_WAVES
@@ -445,7 +450,7 @@ void main() {
             End end = unpack_end(number == 1 ? imageLoad(hits[1], local) : imageLoad(hits[2], local));
             vec3 beside = vec3(0.0); // what is mirrored besides what this part brings
 #ifdef TARN_WAVES
-            if (!first.in_water) {
+            if (wavy) {
                 if (number == 2) { // drawn by what facets let through
                     part.weight = (1.0 - glitter.mirror) / (view.optics.x * view.optics.x);
                 } else {

@@ -37,7 +37,7 @@ void main() {
                                             direction_after(view, part, first_end.t), view.optics.x),
                               surface_level(heights, view, part, first_end));
 #else
-        Surface surface = calm_surface(view, part, first_end);
+        Surface surface = calm_surface(heights, view, part, first_end);
 #endif
         part = split_part(view, part, first_end, surface, number);
         if (!wanted(view, part, number))

@@ -168,9 +168,9 @@ int run_render(Words& words, scene_files::OptionList options) {
         const Image other = image::read_exr(words.against);
         const image::Difference d = image::compare(picture, other);
         if (!words.error_map.empty())
-            image::write_png(words.error_map, image::error_map(picture, other),
-                             {{"Software", text("tarn ", TARN_VERSION)},
-                              {"tarn:command", command_line()}});
+            image::write_png(
+                words.error_map, image::error_map(picture, other),
+                {{"Software", text("tarn ", TARN_VERSION)}, {"tarn:command", command_line()}});
         const image::DistanceDifference z =
             image::compare_distances(picture, other, scene.ground.scale_m, 1e-5);
         std::cout << "against " << words.against << ": relative radiance error mean "

@@ -161,8 +161,9 @@ void add_picture_options(CLI::App& c, PictureWords& w) {
 
 scene_files::OptionList given_options(const CLI::App& c) {
     // Where to write, and what is not about the picture, is another question.
-    static const std::vector<std::string> others = {"output",  "settings", "against", "help",
-                                                    "sidecar", "explain",  "measure", "strip-rows", "error-map"};
+    static const std::vector<std::string> others = {"output",  "settings",   "against",
+                                                    "help",    "sidecar",    "explain",
+                                                    "measure", "strip-rows", "error-map"};
     scene_files::OptionList out;
     for (const CLI::Option* option : c.get_options()) {
         if (option->count() == 0 || option->get_lnames().empty())

@@ -434,6 +434,9 @@ void add_view_options(CLI::App& c, ViewWords& w) {
         ->check(CLI::IsMember({"auto", "on", "off"}));
     c.add_option("--dive-light", w.settings.dive_light_cd,
                  "a diver's lamp by the lens, in candela; 0: none, 10000 is a strong one");
+    c.add_option("--reference-splits", w.settings.reference_splits,
+                 "how often --reference splits a path at the water, 1 to 8; pictures do once")
+        ->capture_default_str();
     c.add_option(
         "--port", w.settings.port_m,
         "radius of the dome before the lens [m]: a camera at the surface sees above and below "

@@ -22,8 +22,8 @@ std::array<std::uint8_t, 3> colour(double place) {
     const int first = std::min(int(at), 3);
     std::array<std::uint8_t, 3> out{};
     for (std::size_t k = 0; k < 3; ++k)
-        out[k] = static_cast<std::uint8_t>(std::lround(
-            stops[first][k] + (at - first) * (stops[first + 1][k] - stops[first][k])));
+        out[k] = static_cast<std::uint8_t>(
+            std::lround(stops[first][k] + (at - first) * (stops[first + 1][k] - stops[first][k])));
     return out;
 }
 
@@ -34,7 +34,8 @@ Picture error_map(const Image& got, const Image& expected) {
         throw Error(text("pictures are ", got.width_px, " x ", got.height_px, " and ",
                          expected.width_px, " x ", expected.height_px));
     const int size = std::max(11, got.height_px / 24), bar = 2 * size;
-    Picture out{.width_px = got.width_px, .height_px = got.height_px + bar, .channels = 3, .bytes = {}};
+    Picture out{
+        .width_px = got.width_px, .height_px = got.height_px + bar, .channels = 3, .bytes = {}};
     out.bytes.assign(std::size_t(out.width_px) * std::size_t(out.height_px) * 3, 24);
     const double floor = relative_floor(expected);
     for (std::size_t i = 0; i < got.radiance.size(); ++i) {
@@ -46,9 +47,9 @@ Picture error_map(const Image& got, const Image& expected) {
     for (int x = left; x < right; ++x)
         fill_box(out, x, got.height_px + bar / 8, x + 1, got.height_px + bar / 2,
                  colour(double(x - left) / (right - left)));
-    for (const auto& [place, words] : {std::pair(0.0, ".01 %"), std::pair(0.25, ".1 %"),
-                                       std::pair(0.5, "1 %"), std::pair(0.75, "10 %"),
-                                       std::pair(1.0, "100 %")})
+    for (const auto& [place, words] :
+         {std::pair(0.0, ".01 %"), std::pair(0.25, ".1 %"), std::pair(0.5, "1 %"),
+          std::pair(0.75, "10 %"), std::pair(1.0, "100 %")})
         draw_text(out, left + int(place * (right - left)), got.height_px + bar - bar / 8,
                   size * 3 / 4, words);
     return out;

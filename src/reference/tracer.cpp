@@ -58,6 +58,13 @@ Lot lot_of(int x, int y, int sample) {
     return v ^ (v >> 33);
 }
 
+/// What a ray may still do at the water: which of its slopes it meets, and how often it may be
+/// split.
+struct Chances {
+    Lot lot;
+    int splits = 1;
+};
+
 class Tracer {
 public:
     Tracer(const scene::Scene& scene, const scene::View& view)
@@ -121,6 +128,7 @@ public:
     glm::dvec3 look(glm::dvec2 place, double& distance, Lot lot) const {
         const glm::dvec3 direction =
             pixel_direction(camera_.forward, camera_.right, camera_.up, half_tangent_, place);
+        const Chances chances{lot, settings_.reference_splits};
         if (port_water_) { // rays begin on a dome, each in what is there
             const glm::dvec3 from = camera_.position + settings_.port_m * direction;
             const double level = port_water_->level_m;
@@ -129,12 +137,13 @@ public:
                                           level - scene_.ground.elevation_m(from.x, from.y))
                        : 0.0;
             return from.z < level + eta
-                       ? in_water(from, direction, *port_water_, 0.0, 0.0, &distance, lot)
-                       : in_air(from, direction, 0.0, &distance, lot);
+                       ? in_water(from, direction, *port_water_, 0.0, 0.0, &distance, chances)
+                       : in_air(from, direction, 0.0, &distance, chances);
         }
         if (camera_lake_)
-            return in_water(camera_.position, direction, *camera_lake_, 0.0, 0.0, &distance, lot);
-        return in_air(camera_.position, direction, 0.0, &distance, lot);
+            return in_water(camera_.position, direction, *camera_lake_, 0.0, 0.0, &distance,
+                            chances);
+        return in_air(camera_.position, direction, 0.0, &distance, chances);
     }
 
 private:
@@ -170,6 +179,19 @@ private:
 
     static glm::dvec3 along(glm::dvec3 origin, glm::dvec3 direction, double bend, double t) {
         return origin + t * direction + glm::dvec3(0, 0, bend * t * t);
+    }
+
+    /// Of a ray that goes on behind the surface; none where it may not be split again.
+    static std::optional<Chances> further(const Chances& chances, int branch) {
+        if (chances.splits <= 1)
+            return {};
+        const auto low = int(chances.lot & 0xfffff), high = int((chances.lot >> 20) & 0xfffff);
+        return Chances{lot_of(low, high, chances.splits * 2 + branch), chances.splits - 1};
+    }
+
+    /// Rays that may meet the water again begin beside it.
+    static glm::dvec3 clear_of_surface(const Chances& chances) {
+        return {0.0, 0.0, chances.splits > 1 ? 1e-4 : 0.0};
     }
 
     Split split(glm::dvec3 direction, const Meeting& at, bool from_water, Lot lot) const {
@@ -412,7 +434,10 @@ private:
 
     /// The side of the block that the scene is cut out of: a hit below the surface.
     bool is_cut(const Hit& hit) const {
-        return hit.point.z < scene_.ground.elevation_m(hit.point.x, hit.point.y) - lift_m_;
+        if (hit.point.z < scene_.ground.elevation_m(hit.point.x, hit.point.y) - lift_m_)
+            return true;
+        const auto level = level_at(hit.point); // the rim of a bed that is cut is no dry land
+        return level && hit.point.z < *level - 0.01;
     }
 
     glm::dvec3 land(const Hit& hit, glm::dvec3 direction, double footprint) const {
@@ -586,11 +611,11 @@ private:
     }
 
     /// Radiance arriving at `origin` from `direction`, both in the air.
-    /// @param lot  none: no water surface is looked for
+    /// @param chances  none: no water surface is looked for
     glm::dvec3 in_air(glm::dvec3 origin, glm::dvec3 direction, double before_m, double* distance,
-                      std::optional<Lot> lot) const {
+                      std::optional<Chances> chances) const {
         double end_m = infinity;
-        const glm::dvec3 radiance = in_clear_air(origin, direction, before_m, end_m, lot);
+        const glm::dvec3 radiance = in_clear_air(origin, direction, before_m, end_m, chances);
         if (distance)
             *distance = end_m;
         return behind_lines(radiance, origin, direction, end_m, before_m, 0.0, nullptr);
@@ -599,8 +624,8 @@ private:
     /// The same without lines in space.
     /// @param end_m  on return: to what was met
     glm::dvec3 in_clear_air(glm::dvec3 origin, glm::dvec3 direction, double before_m, double& end_m,
-                            std::optional<Lot> lot) const {
-        const auto met = meet_in_air(origin, direction, lot.has_value());
+                            std::optional<Chances> chances) const {
+        const auto met = meet_in_air(origin, direction, chances.has_value());
         end_m = met ? met->hit.t : infinity;
         if (!met)
             return sky(direction);
@@ -608,19 +633,54 @@ private:
         if (!hit.water)
             return through_air(origin, direction, hit.t,
                                land(hit, direction, pixel_rad_ * (before_m + hit.t)));
+        const double level = level_at(hit.point).value_or(met->level_m);
+        if (hit.point.z < level - 0.01 - 2.0 * (waves_ ? waves_->bound_m() : 0.0))
+            return through_air(origin, direction, hit.t,
+                               through_side(hit, direction, level, before_m, *chances));
         const Lake lake{met->level_m, scene_.lake_at_level(met->level_m).bed != Bed::unknown};
         const Split at =
             split(glm::normalize(direction + glm::dvec3(0, 0, 2.0 * hit.t * bend_of(direction))),
-                  *met, false, *lot);
+                  *met, false, chances->lot);
+        const glm::dvec3 above = clear_of_surface(*chances);
         glm::dvec3 out(0.0);
         if (settings_.reflection && settings_.mirrored_land)
-            out += at.mirror * in_air(hit.point, at.reflected, before_m + hit.t, nullptr, {});
+            out += at.mirror * in_air(hit.point + above, at.reflected, before_m + hit.t, nullptr,
+                                      further(*chances, 0));
         else if (settings_.reflection)
             out += at.mirror * sky(at.reflected);
         if (settings_.refraction && at.mirror < 1.0)
-            out += at.through *
-                   in_water(hit.point, at.refracted, lake, before_m + hit.t, 0.0, nullptr, {});
+            out += at.through * in_water(hit.point - above, at.refracted, lake, before_m + hit.t,
+                                         0.0, nullptr, further(*chances, 1));
         return through_air(origin, direction, hit.t, out);
+    }
+
+    /// A ray from outside that has met cut water at the side of the scene's block: a pane without
+    /// its glass.
+    glm::dvec3 through_side(const Hit& hit, glm::dvec3 direction, double level, double before_m,
+                            const Chances& chances) const {
+        const Heightfield& g = scene_.ground;
+        const double away[4] = {hit.point.x - g.west_m, g.east_m() - hit.point.x,
+                                hit.point.y - g.south_m(), g.north_m - hit.point.y};
+        const glm::dvec3 normals[4] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}};
+        const glm::dvec3 normal = normals[std::min_element(away, away + 4) - away];
+        const double cosine = std::clamp(-glm::dot(direction, normal), 0.0, 1.0);
+        const double mirror = settings_.fresnel == scene::Fresnel::schlick
+                                  ? fresnel_schlick(cosine, 1.0 / index_)
+                                  : fresnel_dielectric(cosine, 1.0 / index_);
+        // Snell's law for the tangents; what is left of the unit vector goes inwards.
+        const glm::dvec3 tangent = (direction + cosine * normal) / index_;
+        const glm::dvec3 inside =
+            tangent - std::sqrt(std::max(1.0 - glm::dot(tangent, tangent), 0.0)) * normal;
+        glm::dvec3 out(0.0);
+        if (settings_.reflection)
+            out += mirror * sky(direction + 2.0 * cosine * normal);
+        if (settings_.refraction) {
+            const Lake lake{level, scene_.lake_at_level(level).bed != Bed::unknown};
+            out += (1.0 - mirror) / (index_ * index_) *
+                   in_water(hit.point, inside, lake, before_m + hit.t, 0.0, nullptr,
+                            further(chances, 1));
+        }
+        return out;
     }
 
     /// The first of bed and moving surface for a ray that starts in the water.
@@ -651,10 +711,11 @@ private:
 
     /// The same under water, but as it arrives at the eye after `water_before_m` more of the water.
     glm::dvec3 in_water(glm::dvec3 origin, glm::dvec3 direction, const Lake& lake, double before_m,
-                        double water_before_m, double* distance, std::optional<Lot> lot) const {
+                        double water_before_m, double* distance,
+                        std::optional<Chances> chances) const {
         double end_m = infinity;
-        const glm::dvec3 radiance =
-            in_clear_water(origin, direction, lake, before_m, water_before_m, distance, end_m, lot);
+        const glm::dvec3 radiance = in_clear_water(origin, direction, lake, before_m,
+                                                   water_before_m, distance, end_m, chances);
         return behind_lines(radiance, origin, direction, end_m, before_m, water_before_m, &lake);
     }
 
@@ -662,12 +723,12 @@ private:
     /// @param end_m  on return: to where the part ended, also in the midst of the water
     glm::dvec3 in_clear_water(glm::dvec3 origin, glm::dvec3 direction, const Lake& lake,
                               double before_m, double water_before_m, double* distance,
-                              double& end_m, std::optional<Lot> lot) const {
+                              double& end_m, std::optional<Chances> chances) const {
         const double depth = std::max(lake.level_m - origin.z, 0.0);
         double to_surface = direction.z > 1e-6 ? depth / direction.z : infinity;
         std::optional<Hit> hit;
         Meeting surface{{}, lake.level_m, {0.0, 0.0}};
-        if (waves_ && lot) {
+        if (waves_ && chances) {
             to_surface = infinity;
             const auto met = meet_in_water(origin, direction, lake, longest_path_m_);
             if (met && met->hit.water) {
@@ -700,18 +761,20 @@ private:
         if (hit)
             return out + bed(*hit, lake.level_m, pixel_rad_ * (before_m + length), water_m,
                              lit ? lamp_on(*hit, direction, length) : glm::dvec3(0.0));
-        if (!at_surface || !lot)
+        if (!at_surface || !chances)
             return out;
         glm::dvec3 top = origin + length * direction;
         if (!waves_)
             top.z = lake.level_m;
-        const Split at = split(direction, surface, true, *lot);
+        const Split at = split(direction, surface, true, chances->lot);
+        const glm::dvec3 above = clear_of_surface(*chances);
         if (settings_.reflection)
-            out += at.mirror *
-                   in_water(top, at.reflected, lake, before_m + length, water_m, nullptr, {});
+            out += at.mirror * in_water(top - above, at.reflected, lake, before_m + length, water_m,
+                                        nullptr, further(*chances, 0));
         if (settings_.refraction && at.mirror < 1.0)
-            out += medium_.transmittance(water_m) * at.through *
-                   in_air(top, at.refracted, before_m + length, nullptr, {});
+            out +=
+                medium_.transmittance(water_m) * at.through *
+                in_air(top + above, at.refracted, before_m + length, nullptr, further(*chances, 1));
         return out;
     }
 

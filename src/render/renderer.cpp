@@ -59,6 +59,7 @@ std::string Renderer::path_defines() const {
     return std::string(rays_in_step_ ? "#define TARN_CONES_A_LOOK 8\n"
                                      : "") + // lib/walks/cone_map.glsl
            (curved_ ? "#define TARN_CURVED 1\n" : "") +
+           (cut_water_ ? "#define TARN_CUT_WATER 1\n" : "") +
            (port_ ? "#define TARN_PORT 1\n" : "");
 }
 
@@ -219,6 +220,9 @@ void Renderer::prepare(const scene::View& view) {
     block_.base.y = float(std::floor(row));
     curved_ = scene::is_curved(scene_, view);
     block_.base.w = curved_ ? float(scene::bend_per_m) : 0.0f;
+    // Only from outside one sees the side of water that the data cut.
+    cut_water_ = wet_border_ && !(col >= 0.0 && row >= 0.0 && col <= ground.size().cols - 1 &&
+                                  row <= ground.size().rows - 1);
     prepare_waves(view);
     block_.camera = {float(col - double(block_.base.x)), float(row - double(block_.base.y)),
                      float(p.z - ground.offset_m), float(pixel_rad)};

@@ -197,7 +197,7 @@ private:
     const gpu::ComputeProgram* calm_shade_ = nullptr;  ///< of them, for this picture
     std::vector<glm::vec3> sky_made_;                  ///< as it is on the GPU
     bool hazy_ = false, whole_sky_ = false, mapped_ = false, curved_ = false, coarse_ = false,
-         port_ = false, lamp_ = false;
+         port_ = false, lamp_ = false, cut_water_ = false;
     gpu::Texture2D port_heights_;
     std::map<std::string, gpu::ComputeProgram> port_passes_; ///< by the waves' defines
     gpu::Texture2D exposed_, drape_;
@@ -220,6 +220,7 @@ private:
     gpu::Texture2D sunlit_;   ///< how waves focus the light of each part, with caustics only
     gpu::Texture2D surfaces_; ///< of the water met, for the passes after the first; with waves only
     double top_m_ = 0.0, water_top_m_ = 0.0; ///< highest node, above z = 0; highest level
+    bool wet_border_ = false;                ///< water lies at the scene's border
     double deepest_m_ = 0.0;                 ///< water of the scene
     glm::dvec3 camera_m_{0.0};
     bool in_slab_ =

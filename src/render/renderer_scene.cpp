@@ -47,6 +47,12 @@ void Renderer::upload_heights() {
     for (const Extremes& e : rows)
         all = {std::max(all.water_top, e.water_top), std::max(all.deepest, e.deepest),
                std::min(all.low, e.low), std::max(all.high, e.high)};
+    const auto wet = [&](int col, int row) { return water.codes[{col, row}] != no_water_code; };
+    wet_border_ = false;
+    for (int col = 0; col < size.cols; ++col)
+        wet_border_ = wet_border_ || wet(col, 0) || wet(col, size.rows - 1);
+    for (int row = 0; row < size.rows; ++row)
+        wet_border_ = wet_border_ || wet(0, row) || wet(size.cols - 1, row);
     water_top_m_ = all.water_top;
     deepest_m_ = all.deepest;
     heights_.upload(GL_RG, GL_UNSIGNED_SHORT, packed_.data());

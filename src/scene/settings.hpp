@@ -106,6 +106,8 @@ struct RenderSettings {
     DrapeOn drape_on = DrapeOn::all;        ///< of layers
     bool space_lines_lit = false; ///< lines in space are things that light falls on and water
                                   ///< hides; else signs, as bright wherever they are
+    int reference_splits = 1; ///< how often the reference splits a path at the water, [1, 8]; the
+                              ///< GPU does once
     Walk walk = Walk::cone_map;
     bool coarse_far_land = false; ///< land's blocks narrower than a pixel are met at their tops; of
                                   ///< cone_map only, whose file says how far that is off

@@ -189,6 +189,46 @@ TEST(Picture, LandShadesTheWaterItself) {
 // at 3.912 / c (Koschmieder 1924), with c where the water lets through most; and a little sooner,
 // since what the eye takes together is less clear elsewhere. (Pure water is far clearer in the blue
 // than in the green that counts most.)
+// A lake that the data cut, from outside: an aquarium without its glass, as the reference sees it;
+// from inside the water goes on.
+TEST(Picture, CutWaterIsSeenThroughItsSide) {
+    test_support::context();
+    scene::Scene scene = scene::tank();
+    const Node middle{100, 100};
+    for (std::uint16_t& code : scene.ground.codes.values) // no walls
+        code = scene.ground.codes[middle];
+    for (std::uint16_t& code : scene.water.codes.values)
+        code = scene.water.codes[middle];
+    scene.optics.absorption_per_m = {0.1, 0.05, 0.03};
+    scene.optics.backscattering_per_m = glm::dvec3(0.005);
+    scene.optics.bands.clear();
+    render::Renderer renderer(scene);
+    scene::View view;
+    view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.4, -0.7, 0.7)));
+    view.settings = {.width_px = 96, .height_px = 64, .samples = 1};
+    for (const auto& camera :
+         {scene::look({10, -130, -3}, 10, 0, 60), scene::look({130, 10, 4}, 260, -10, 60),
+          scene::look({-115, 120, -5}, 140, 5, 70), scene::look({0, -99, -3}, 180, 0, 70)}) {
+        view.camera = camera;
+        const Image got = renderer.draw(view), expected = reference::trace(scene, view, {});
+        const image::Difference d = image::compare(got, expected);
+        EXPECT_LT(d.mean_relative, 0.002) << camera.position.x << " " << camera.position.y;
+        EXPECT_LT(d.p99_relative, 0.02) << camera.position.x << " " << camera.position.y;
+    }
+    // Straight at the side at 3 m: what the water scatters, less what the surface keeps, and no
+    // sky.
+    view.camera = scene::look({10, -130, -3}, 0, 0, 2);
+    const glm::vec3 pane = renderer.draw(view).radiance[32 * 96 + 48];
+    view.camera = scene::look({10, -99.9, -3}, 0, 0, 2);
+    const glm::vec3 water = renderer.draw(view).radiance[32 * 96 + 48];
+    // At right angles .0204 is mirrored, of the sky behind the camera: as bright as it is.
+    view.camera = scene::look({10, -130, -3}, 180, 0, 2);
+    const glm::vec3 sky = renderer.draw(view).radiance[32 * 96 + 48];
+    for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(pane[k], water[k] * (1.0 - 0.0204) / (1.333 * 1.333) + 0.0204 * sky[k],
+                    0.01 * pane[k]);
+}
+
 // Strips of a picture are the picture: calm, in waves with nets and shafts of light, and below
 // them.
 TEST(Picture, StripsAreTheWhole) {

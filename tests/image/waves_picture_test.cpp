@@ -1,5 +1,6 @@
 // Moving water in pictures: brightness near and far, the reference, the camera in and at the waves.
 #include "core/error.hpp"
+#include "image/compare.hpp"
 #include "reference/tracer.hpp"
 #include "render/renderer.hpp"
 #include "scene/presets.hpp"
@@ -107,6 +108,43 @@ TEST(WavePictures, APatchIsAsBrightResolvedAsItIsInOnePixel) {
                     EXPECT_NEAR(mean, 1.0, allowed + 2 * error)
                         << choppiness << opposite << " " << elevation << " " << speed;
                 }
+}
+
+// Under an even sky, over a white bed, everything is as bright as the sky from above and n^2 times
+// that from below, however often a path is split: no branch is lost or counted twice.
+TEST(WavePictures, TheReferencesFurtherSplitsKeepTheFurnaceClosed) {
+    scene::Scene scene = scene::tank();
+    const Node middle{100, 100};
+    for (std::uint16_t& code : scene.ground.codes.values) // no walls: they are darker
+        code = scene.ground.codes[middle];
+    for (std::uint16_t& code : scene.water.codes.values)
+        code = scene.water.codes[middle];
+    scene.optics = {
+        .name = "lab", .absorption_per_m = {0, 0, 0}, .backscattering_per_m = {0, 0, 0}};
+    scene::View view;
+    view.lighting = scene::uniform_sky({0, 0, 1}, glm::dvec3(0), glm::dvec3(1));
+    view.waves = wind(8.0);
+    view.waves.fetch_m.reset();
+    view.settings = {.width_px = 12, .height_px = 8, .samples = 2, .ground_albedo = 1.0};
+    for (const auto& [z, pitch, expected] :
+         {std::tuple(3.0, -40.0, 1.0), std::tuple(-3.0, 70.0, 1.333 * 1.333)})
+        for (const int splits : {1, 2, 5}) {
+            view.camera = scene::look({0, 0, z}, 20, pitch, z > 0.0 ? 50 : 25);
+            view.settings.reference_splits = splits;
+            const Image picture = reference::trace(scene, view, {});
+            for (const glm::vec3& c : picture.radiance)
+                ASSERT_NEAR(c.g, expected, 2e-3 * expected) << z << " " << splits;
+        }
+    // Calm water is met once.
+    view.waves = {};
+    view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.4, -0.7, 0.7)));
+    for (const double z : {3.0, -3.0}) {
+        view.camera = scene::look({0, 0, z}, 20, -7.0 * z, 50);
+        view.settings.reference_splits = 1;
+        const Image one = reference::trace(scene, view, {});
+        view.settings.reference_splits = 4;
+        EXPECT_LT(image::compare(reference::trace(scene, view, {}), one).mean_relative, 2e-5);
+    }
 }
 
 // Moving water near the camera, as the reference sees it: from above, from below, in the slab
