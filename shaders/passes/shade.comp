@@ -401,21 +401,57 @@ vec3 depth_sheet(Part part, End end) {
 }
 #endif
 
-void main() {
-    ivec2 local = ivec2(gl_GlobalInvocationID.xy);
+// A pixel's light, but for what a wavy surface mirrors of the land.
+struct Shaded {
+    bool mine;        // there is something to store
+    vec3 radiance;
+    bool glitters;    // a wavy surface from above: what follows is to be added
+    vec3 mirrored;    // of sky and sun, the mean over its facets
+    vec3 land;        // what one facet's land changes of that
+    vec2 mean;        // slope of the surface, and how far its facets' are off it
+    float spread;
+};
+
+#ifdef TARN_WAVES
+// One facet a sample says whether land or sky is mirrored: a coin that is tossed. Pixels around that have the same
+// facets have tossed it, too; each takes the mean of theirs, by how likely their slopes are its own.
+const int share_reach = 3;
+shared vec4 shared_land[64];  // xyz: land, w: spread of slopes, < 0: does not glitter
+shared vec2 shared_means[64];
+
+vec3 land_around(Shaded own) {
+    ivec2 here = ivec2(gl_LocalInvocationID.xy);
+    vec3 sum = vec3(0.0);
+    float weights = 0.0;
+    ivec2 low = max(here - share_reach, ivec2(0)), high = min(here + share_reach, ivec2(7));
+    for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x) {
+            vec4 other = shared_land[y * 8 + x];
+            if (other.w < 0.0)
+                continue;
+            vec2 off = shared_means[y * 8 + x] - own.mean;
+            float weight = exp(-2.0 * dot(off, off) / max(own.spread + other.w, 1e-9));
+            sum += weight * other.xyz;
+            weights += weight;
+        }
+    return sum / max(weights, 1e-6);
+}
+#endif
+
+Shaded shade_pixel(ivec2 local, ivec2 pixel) {
+    Shaded shaded = Shaded(false, vec3(0.0), false, vec3(0.0), vec3(0.0), vec2(0.0), 0.0);
     if (any(greaterThanEqual(local, view.tile.zw)))
-        return;
-    ivec2 pixel = pixel_of(view, local);
+        return shaded;
     Part first = camera_part(view, pixel);
     if (left_out(view, first))
-        return;
+        return shaded;
+    shaded.mine = true;
     End first_end = unpack_end(imageLoad(hits[0], local));
     Sunlit sunlit = Sunlit(1.0, 1.0);
 #ifdef TARN_CAUSTICS
     if (first.in_water)
         sunlit = sunlit_of(local, 0);
 #endif
-    Sunlit sunlit_first = sunlit;
     vec3 radiance = part_radiance(first, first_end, 0.0, 0.0, sunlit);
     float water_m = first.in_water ? first_end.t : 0.0;
     vec3 remaining = first.in_water ? transmittance(water, view.water, water_m) : vec3(1.0); // of light from its end
@@ -448,7 +484,7 @@ void main() {
             if (!wanted(view, part, number))
                 continue;
             End end = unpack_end(number == 1 ? imageLoad(hits[1], local) : imageLoad(hits[2], local));
-            vec3 beside = vec3(0.0); // what is mirrored besides what this part brings
+            vec3 beside = vec3(0.0); // what goes for what this part brings
 #ifdef TARN_WAVES
             if (wavy) {
                 if (number == 2) { // drawn by what facets let through
@@ -462,12 +498,14 @@ void main() {
 #else
                     bool met_something = (end.flags & end_ground) != 0u;
 #endif
-                    if (!met_something) {
-                        radiance += mirrored;
+                    shaded.glitters = true;
+                    shaded.mirrored = mirrored;
+                    shaded.mean = met.mean;
+                    shaded.spread = met.taken.x + met.taken.z;
+                    if (!met_something)
                         continue;
-                    }
                     part.weight = met.bright / glitter.seen;
-                    beside = mirrored - part.weight * sky_radiance(sky_table, part.direction, view.sun.xyz);
+                    beside = -part.weight * sky_radiance(sky_table, part.direction, view.sun.xyz);
                 }
             }
 #endif
@@ -484,11 +522,38 @@ void main() {
             }
 #endif
             brought *= part.weight;
-            if (!part.in_water) // from above, a sample's land may hide more sky than its pixel has
-                brought = first.in_water ? remaining * brought : max(beside + brought, vec3(0.0));
+            if (!part.in_water && first.in_water)
+                brought *= remaining;
+#ifdef TARN_WAVES
+            if (wavy && number == 1) {
+                shaded.land = beside + brought;
+                continue;
+            }
+#endif
             radiance += brought;
         }
     }
+    shaded.radiance = radiance;
+    return shaded;
+}
+
+void main() {
+    ivec2 local = ivec2(gl_GlobalInvocationID.xy), pixel = pixel_of(view, local);
+    Shaded own = shade_pixel(local, pixel);
+#ifdef TARN_WAVES
+    shared_land[gl_LocalInvocationIndex] = vec4(own.land, own.glitters ? own.spread : -1.0);
+    shared_means[gl_LocalInvocationIndex] = own.mean;
+    barrier();
+    if (own.glitters) // land may hide more sky than there is in the mean
+        own.radiance += max(own.mirrored + land_around(own), vec3(0.0));
+#endif
+    if (!own.mine)
+        return;
+    vec3 radiance = own.radiance;
+#if defined(TARN_HAZE) || defined(TARN_SPACE_LINES)
+    Part first = camera_part(view, pixel);
+    End first_end = unpack_end(imageLoad(hits[0], local));
+#endif
 #ifdef TARN_HAZE
     if (!first.in_water && (first_end.flags & (end_surface | end_overlay)) != 0u)
         radiance = through_air(first, first_end.t, radiance);
@@ -496,7 +561,12 @@ void main() {
 #ifdef TARN_SPACE_LINES
     SpaceMark mark = mark_before(first, first_end.t, 0.0);
     if (mark.cover > 0.0) {
-        vec3 marked_so = mark_radiance(first, mark, 0.0, 0.0, sunlit_first);
+        Sunlit sunlit = Sunlit(1.0, 1.0);
+#ifdef TARN_CAUSTICS
+        if (first.in_water)
+            sunlit = sunlit_of(local, 0);
+#endif
+        vec3 marked_so = mark_radiance(first, mark, 0.0, 0.0, sunlit);
         radiance = mix(radiance, marked_so, mark.cover);
     }
 #endif
