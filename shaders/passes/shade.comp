@@ -401,45 +401,54 @@ vec3 depth_sheet(Part part, End end) {
 }
 #endif
 
-// A pixel's light, but for what a wavy surface mirrors of the land.
+// A pixel's light, but for what a wavy surface mirrors of the land instead of the sky.
 struct Shaded {
-    bool mine;        // there is something to store
+    bool mine; // there is something to store
     vec3 radiance;
-    bool glitters;    // a wavy surface from above: what follows is to be added
-    vec3 mirrored;    // of sky and sun, the mean over its facets
-    vec3 land;        // what one facet's land changes of that
-    vec2 mean;        // slope of the surface, and how far its facets' are off it
-    float spread;
 };
 
-#ifdef TARN_WAVES
+#ifdef TARN_SHARED_LAND
 // One facet a sample says whether land or sky is mirrored: a coin that is tossed. Pixels around that have the same
 // facets have tossed it, too; each takes the mean of theirs, by how likely their slopes are its own.
-const int share_reach = 3;
-shared vec4 shared_land[64];  // xyz: land, w: spread of slopes, < 0: does not glitter
-shared vec2 shared_means[64];
+const int share_reach = 2;
+shared uint shared_land[3 * 64]; // what land changes and the spread of slopes as halves, mean slopes; spread 0: none
+shared uint shared_any;          // is there land to be shared?
 
-vec3 land_around(Shaded own) {
+void share_land(vec3 land, vec2 mean, float spread) {
+    uint i = gl_LocalInvocationIndex;
+    shared_land[i] = packHalf2x16(land.xy);
+    shared_land[64u + i] = packHalf2x16(vec2(land.z, spread));
+    shared_land[128u + i] = packHalf2x16(mean);
+    if (any(notEqual(land, vec3(0.0))))
+        shared_any = 1u;
+}
+
+vec3 land_around() {
+    uint own = gl_LocalInvocationIndex;
+    float own_spread = unpackHalf2x16(shared_land[64u + own]).y;
+    if (shared_any == 0u || own_spread == 0.0)
+        return vec3(0.0);
+    vec2 own_mean = unpackHalf2x16(shared_land[128u + own]);
     ivec2 here = ivec2(gl_LocalInvocationID.xy);
     vec3 sum = vec3(0.0);
     float weights = 0.0;
     ivec2 low = max(here - share_reach, ivec2(0)), high = min(here + share_reach, ivec2(7));
     for (int y = low.y; y <= high.y; ++y)
         for (int x = low.x; x <= high.x; ++x) {
-            vec4 other = shared_land[y * 8 + x];
-            if (other.w < 0.0)
+            int i = y * 8 + x;
+            vec2 last = unpackHalf2x16(shared_land[64 + i]), off = unpackHalf2x16(shared_land[128 + i]) - own_mean;
+            if (last.y == 0.0)
                 continue;
-            vec2 off = shared_means[y * 8 + x] - own.mean;
-            float weight = exp(-2.0 * dot(off, off) / max(own.spread + other.w, 1e-9));
-            sum += weight * other.xyz;
+            float weight = max(1.0 - dot(off, off) / (own_spread + last.y), 1e-3);
+            sum += weight * vec3(unpackHalf2x16(shared_land[i]), last.x);
             weights += weight;
         }
-    return sum / max(weights, 1e-6);
+    return sum / weights;
 }
 #endif
 
 Shaded shade_pixel(ivec2 local, ivec2 pixel) {
-    Shaded shaded = Shaded(false, vec3(0.0), false, vec3(0.0), vec3(0.0), vec2(0.0), 0.0);
+    Shaded shaded = Shaded(false, vec3(0.0));
     if (any(greaterThanEqual(local, view.tile.zw)))
         return shaded;
     Part first = camera_part(view, pixel);
@@ -498,12 +507,13 @@ Shaded shade_pixel(ivec2 local, ivec2 pixel) {
 #else
                     bool met_something = (end.flags & end_ground) != 0u;
 #endif
-                    shaded.glitters = true;
-                    shaded.mirrored = mirrored;
-                    shaded.mean = met.mean;
-                    shaded.spread = met.taken.x + met.taken.z;
-                    if (!met_something)
+                    radiance += mirrored;
+                    if (!met_something) {
+#ifdef TARN_SHARED_LAND
+                        share_land(vec3(0.0), met.mean, met.taken.x + met.taken.z + 1e-6);
+#endif
                         continue;
+                    }
                     part.weight = met.bright / glitter.seen;
                     beside = -part.weight * sky_radiance(sky_table, part.direction, view.sun.xyz);
                 }
@@ -524,13 +534,13 @@ Shaded shade_pixel(ivec2 local, ivec2 pixel) {
             brought *= part.weight;
             if (!part.in_water && first.in_water)
                 brought *= remaining;
-#ifdef TARN_WAVES
+#ifdef TARN_SHARED_LAND
             if (wavy && number == 1) {
-                shaded.land = beside + brought;
+                share_land(beside + brought, met.mean, met.taken.x + met.taken.z + 1e-6);
                 continue;
             }
 #endif
-            radiance += brought;
+            radiance += beside + brought;
         }
     }
     shaded.radiance = radiance;
@@ -539,13 +549,16 @@ Shaded shade_pixel(ivec2 local, ivec2 pixel) {
 
 void main() {
     ivec2 local = ivec2(gl_GlobalInvocationID.xy), pixel = pixel_of(view, local);
-    Shaded own = shade_pixel(local, pixel);
-#ifdef TARN_WAVES
-    shared_land[gl_LocalInvocationIndex] = vec4(own.land, own.glitters ? own.spread : -1.0);
-    shared_means[gl_LocalInvocationIndex] = own.mean;
+#ifdef TARN_SHARED_LAND
+    shared_land[64u + gl_LocalInvocationIndex] = 0u;
+    if (gl_LocalInvocationIndex == 0u)
+        shared_any = 0u;
     barrier();
-    if (own.glitters) // land may hide more sky than there is in the mean
-        own.radiance += max(own.mirrored + land_around(own), vec3(0.0));
+#endif
+    Shaded own = shade_pixel(local, pixel);
+#ifdef TARN_SHARED_LAND
+    barrier();
+    own.radiance = max(own.radiance + land_around(), vec3(0.0)); // a sample's land may hide more sky than there is
 #endif
     if (!own.mine)
         return;

@@ -102,7 +102,11 @@ const Renderer::WavyPasses& Renderer::wavy_passes() {
     const std::string defined = path_defines() + waves_->defines() + shade_defines() +
                                 sunlight_defines() + (in_slab_ ? "#define TARN_IN_SLAB 1\n" : ""),
                       from_camera = defined + coarse_define();
-    const auto key = std::pair(walk_, from_camera);
+    // Land is mirrored from above alone.
+    constexpr std::uint32_t mirrors = TARN_FLAG_REFLECTION | TARN_FLAG_MIRRORED_LAND;
+    const bool shares = !under_water() && (block_.counts.z & mirrors) == mirrors;
+    const std::string sharing = shares ? "#define TARN_SHARED_LAND 1\n" : "";
+    const auto key = std::pair(walk_, from_camera + sharing);
     if (const auto known = wavy_passes_.find(key); known != wavy_passes_.end())
         return known->second;
     return wavy_passes_
@@ -110,7 +114,7 @@ const Renderer::WavyPasses& Renderer::wavy_passes() {
                  WavyPasses{walk_pass("primary", from_camera), walk_pass("surface", from_camera),
                             walk_pass("secondary", defined), walk_pass("shadow", defined),
                             caustics_ ? walk_pass("sunlit", defined) : gpu::ComputeProgram(),
-                            walk_pass("shade", defined)})
+                            walk_pass("shade", defined + sharing)})
         .first->second;
 }
 

@@ -5,7 +5,8 @@
 //                    [--intersection METHOD] [--wind M/S] [--caustics METHOD] [--caustic-texels N]
 //                    [--caustic-photons N]
 //                    [--shaft-steps N] [--map 1] [--drag N] [--frames N] [--json FILE] [--ppm
-//                    PREFIX]
+//                    PREFIX] [--lines N] [--port M] [--dive-light CD]
+// --view split: at the water's surface. --lines: random ones in space, some pixels wide.
 #include "bench/timing.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
@@ -23,6 +24,7 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <iostream>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -32,12 +34,30 @@ using namespace tarn;
 
 using test_support::split;
 
-scene::Camera camera_for(const std::string& view) {
+scene::Camera camera_for(const std::string& view, double level_m) {
+    if (view == "split")
+        return scene::look({600, -1500, level_m + 0.01}, 200.0, -4.0, 75.0);
     if (view == "high")
         return scene::look({-900, -6500, 3300}, 8.0, -22.0, 45.0);
     if (view == "shore")
         return scene::look({-400, -2300, 952}, 5.0, -4.0, 55.0);
     return scene::look({600, -1500, 918}, 200.0, 6.0, 75.0); // dive
+}
+
+/// Lines of ten metres to a kilometre, anywhere over and in the lake.
+std::vector<scene::SpaceStroke> random_strokes(const scene::Scene& scene, int count) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> even(-1.0, 1.0);
+    std::vector<scene::SpaceStroke> out;
+    const double level = scene.lakes.front().level_m;
+    for (int i = 0; i < count; ++i) {
+        const glm::dvec3 from(4000.0 * even(random), 4000.0 * even(random),
+                              level + 60.0 * even(random));
+        const double size = std::pow(10.0, 2.0 + even(random));
+        out.push_back(
+            {from, from + size * glm::dvec3(even(random), even(random), 0.2 * even(random))});
+    }
+    return out;
 }
 
 void write_ppm(const std::string& path, const Image& image) {
@@ -59,6 +79,8 @@ int run(int argc, char** argv) {
     int frames = 41;
     double wind = 0.0; // m/s; 0: calm
     std::string caustics = "splat";
+    int lines = 0;
+    double port_m = 0.0, dive_light_cd = 0.0;
     int caustic_texels = 0, caustic_photons = 1, shaft_steps = 2;
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
@@ -85,6 +107,12 @@ int run(int argc, char** argv) {
             wind = std::atof(value.c_str());
         else if (word == "--frames")
             frames = std::max(1, std::atoi(value.c_str()));
+        else if (word == "--lines")
+            lines = std::max(0, std::atoi(value.c_str()));
+        else if (word == "--port")
+            port_m = std::atof(value.c_str());
+        else if (word == "--dive-light")
+            dive_light_cd = std::atof(value.c_str());
         else if (word == "--map")
             map = std::atoi(value.c_str()) != 0;
         else if (word == "--drag")
@@ -101,7 +129,9 @@ int run(int argc, char** argv) {
     std::string json = "{\"device\": \"" + context.renderer() + "\", \"results\": [";
     bool first = true;
     for (const std::string& side : split(sides)) {
-        const scene::Scene scene = scene::mountain_lake(std::atoi(side.c_str()));
+        scene::Scene scene = scene::mountain_lake(std::atoi(side.c_str()));
+        scene.space_strokes = random_strokes(scene, lines);
+        const double level_m = scene.lakes.front().level_m;
         const auto load = std::chrono::steady_clock::now();
         render::Renderer renderer(scene);
         glFinish();
@@ -121,7 +151,7 @@ int run(int argc, char** argv) {
                 for (const Mode mode : {Mode{"all", true, true}, Mode{"no shadows", false, true},
                                         Mode{"primary rays", false, false}}) {
                     scene::View view;
-                    view.camera = camera_for(name);
+                    view.camera = camera_for(name, level_m);
                     view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.5, -0.4, 0.75)));
                     view.settings = {.width_px = w,
                                      .height_px = h,
@@ -134,6 +164,8 @@ int run(int argc, char** argv) {
                     for (const scene::WalkMethod& m : scene::walk_methods())
                         if (method == m.name)
                             view.settings.walk = m.walk;
+                    view.settings.port_m = port_m;
+                    view.settings.dive_light_cd = dive_light_cd;
                     view.settings.caustic_texels = caustic_texels;
                     view.settings.caustic_photons = caustic_photons;
                     view.settings.shaft_steps = shaft_steps;
@@ -200,7 +232,7 @@ int run(int argc, char** argv) {
         // drawn.
         if (drag > 0) {
             scene::View view;
-            view.camera = camera_for("high");
+            view.camera = camera_for("high", level_m);
             view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.5, -0.4, 0.75)));
             view.settings = {.width_px = 1920, .height_px = 1080, .samples = 1};
             view.settings.walk = scene::Walk::maximum_mipmap;
