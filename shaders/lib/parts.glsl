@@ -224,10 +224,10 @@ void place_at(ViewBlock view, Part part, float t, out ivec2 cell, out vec2 insid
     inside = clamp(at - node, 0.0, 1.0);
 }
 
-// lit_share — whether the sun's light comes to a place in the water of a part, by where it enters: 0 in the shadow of
-//             land, 1 beside it. The bed's own shadow is not asked for.
+// lit_share — whether the sun's light comes to a place in the water of a part: 0 in the shadow of land, by where the
+//             light enters, or of the bed, 1 beside it.
 //
-//   land_shadow  height below which land hides the sun (src/scene/land_shadow.hpp)
+//   land_shadow  x: height below which land hides the sun, y: below which the bed does (src/scene/land_shadow.hpp)
 //   t            metres of the part
 //   below        towards the sun, in the water
 float lit_share(sampler2D land_shadow, ViewBlock view, Part part, float t, vec3 below) {
@@ -235,5 +235,11 @@ float lit_share(sampler2D land_shadow, ViewBlock view, Part part, float t, vec3 
     vec2 east_north = t * part.direction.xy + depth / below.z * below.xy;
     vec2 nodes = part.base + part.origin.xy + east_north * vec2(1.0, -1.0) / view.grid.z;
     float shadow = textureLod(land_shadow, nodes / (view.grid.xy - 1.0), 0.0).x;
-    return clamp((part.level - shadow) / view.sun_irradiance.w + 0.5, 0.0, 1.0);
+    float lit = clamp((part.level - shadow) / view.sun_irradiance.w + 0.5, 0.0, 1.0);
+#ifdef TARN_BED_SHADOW
+    vec2 here = part.base + part.origin.xy + t * vec2(part.direction.x, -part.direction.y) / view.grid.z;
+    float bed = textureLod(land_shadow, here / (view.grid.xy - 1.0), 0.0).y;
+    lit *= clamp((part.origin.z + t * part.direction.z - bed) / view.sky_irradiance.w + 0.5, 0.0, 1.0);
+#endif
+    return lit;
 }

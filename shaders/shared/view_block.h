@@ -27,7 +27,7 @@ using ivec4 = glm::ivec4;
 #define TARN_TEXTURE_OVERLAY 5 // RGBA32F: rasterised things: radiance, and distance [m] in alpha, 0 = none
 #define TARN_TEXTURE_SKY_SOFT 11 // RGBA16F (RGB32F on software GL): the same, quicker to look up, for sums
 #define TARN_TEXTURE_WATER 12  // RGBA32F: what water does to light by colour (lib/medium.glsl)
-#define TARN_TEXTURE_LAND_SHADOW 14 // R32F: below this height [m above heights.x] land hides the sun
+#define TARN_TEXTURE_LAND_SHADOW 14 // RG32F: below these heights [m above heights.x] land, and the bed, hide the sun
 #define TARN_TEXTURE_BEAMS 4   // R32F: free path of each tile of 8 x 8 pixels [m]
 #define TARN_TEXTURE_PORT 15 // R32F: height of the water around a camera at its surface: passes/port.comp
 #define TARN_PORT_SIDE 64    // texels
@@ -64,7 +64,7 @@ struct ViewBlock {
                           // z: water offset [m], w: water [m per unit texel]
     vec4 sun;             // xyz: towards the sun, w: angular radius of its disc [rad]
     vec4 sun_irradiance;  // rgb: on a plane facing the sun, w: height over which the edge of land's shadow is spread [m]
-    vec4 sky_irradiance;  // rgb: on a horizontal plane, w: -
+    vec4 sky_irradiance;  // rgb: on a horizontal plane, w: the same of the bed's shadow [m]
     vec4 air;             // rgb: extinction at the lake's level [1/m], w: 1 / height over which it falls by e [1/m]
     vec4 optics;          // x: index of refraction of the water, y: greatest path in it [m], z: share of an even
                           // sky's light that flat water lets in, w: how fast light falls in it, about [1/m]

@@ -778,8 +778,8 @@ private:
         return out;
     }
 
-    /// The sun's light that the water scatters into a part of the view: what lies in the sun (the
-    /// bed's own shadow is not asked for, as on the GPU), shafts and all.
+    /// The sun's light that the water scatters into a part of the view: what lies in the sun,
+    /// shafts and all.
     glm::dvec3 sun_scattered(glm::dvec3 origin, glm::dvec3 direction, double depth, double before_m,
                              double length) const {
         const double slant = 1.0 / sun_below_.z, sink = -direction.z;
@@ -800,7 +800,8 @@ private:
             const double deep = std::max(depth + sink * t, 0.0), way = slant * deep + before_m + t;
             const glm::dvec3 enters = origin + t * direction + deep / sun_below_.z * sun_below_;
             if (settings_.shadows &&
-                blocked(enters + glm::dvec3(0, 0, lift_m_), light_.sun_direction, infinity)) {
+                (blocked(enters + glm::dvec3(0, 0, lift_m_), light_.sun_direction, infinity) ||
+                 blocked(origin + t * direction, sun_below_, deep / sun_below_.z))) {
                 if (!shafts && from > lit_from)
                     sum += between(lit_from, from);
                 lit_from = to;

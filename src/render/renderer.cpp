@@ -48,6 +48,7 @@ std::string Renderer::shade_defines() const {
     return std::string(hazy_ ? "#define TARN_HAZE 1\n" : "") +
            (whole_sky_ ? "#define TARN_WHOLE_SKY 1\n" : "") +
            (shadowed_ ? "#define TARN_LAND_SHADOW 1\n" : "") +
+           (bed_shadowed_ ? "#define TARN_BED_SHADOW 1\n" : "") +
            (mapped_ ? "#define TARN_MAP 1\n" : "") +
            (space_lines_.id() != 0 ? "#define TARN_SPACE_LINES 1\n" : "") +
            (lamp_ ? "#define TARN_LAMP 1\n" : "");

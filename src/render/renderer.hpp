@@ -202,9 +202,11 @@ private:
     std::map<std::string, gpu::ComputeProgram> port_passes_; ///< by the waves' defines
     gpu::Texture2D exposed_, drape_;
     gpu::Texture2D land_shadow_;
-    double shadow_softness_m_ = 1.0;
-    bool shadowed_ = false;                ///< land's shadow lies on some of the water
-    std::optional<glm::dvec3> shadow_sun_; ///< as the shadow was worked out last
+    double shadow_softness_m_ = 1.0, bed_softness_m_ = 1.0;
+    bool shadowed_ = false;     ///< land's shadow, or the bed's, lies on some of the water
+    bool bed_shadowed_ = false; ///< the bed's does
+    std::optional<std::pair<glm::dvec3, double>>
+        shadow_sun_; ///< and index of the water, as the shadow was worked out last
     FieldBounds bounds_;
     std::map<std::pair<scene::Walk, std::string>, WalkPasses> passes_; ///< and what is defined
     const WalkPasses* calm_walk_ = nullptr; ///< of them, for this picture

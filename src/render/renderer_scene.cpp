@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <vector>
 
 namespace tarn::render {
@@ -217,26 +218,36 @@ void Renderer::prepare_land_shadow(const scene::View& view) {
     const glm::dvec3 sun = view.lighting.sun_direction;
     const glm::dvec3 light = view.lighting.sun_irradiance;
     if (!view.settings.shadows || !(light.x + light.y + light.z > 0.0)) {
-        shadowed_ = false;
+        shadowed_ = bed_shadowed_ = false;
         shadow_sun_.reset();
         return;
     }
-    if (shadow_sun_ != sun) {
-        shadow_sun_ = sun;
-        const auto shadow = scene::land_shadow(scene_, sun);
-        shadowed_ = shadow.has_value();
-        if (shadow) {
-            std::vector<float> heights;
-            heights.reserve(shadow->height_m.size());
-            for (const float h : shadow->height_m)
-                heights.push_back(float(double(h) - scene_.ground.offset_m));
-            land_shadow_ = gpu::Texture2D(GL_R32F, shadow->cols, shadow->rows, 1,
-                                          gpu::Filter::linear, "land's shadow");
-            land_shadow_.upload(GL_RED, GL_FLOAT, heights.data());
-            shadow_softness_m_ = shadow->softness_m;
+    if (const auto asked = std::pair(sun, scene_.optics.index); shadow_sun_ != asked) {
+        shadow_sun_ = asked;
+        const glm::dvec3 flat_normal(0.0, 0.0, 1.0);
+        const glm::dvec3 below =
+            sun.z > 0.0 ? -glm::refract(-sun, flat_normal, 1.0 / scene_.optics.index) : flat_normal;
+        const auto land = scene::land_shadow(scene_, sun), bed = scene::bed_shadow(scene_, below);
+        bed_shadowed_ = bed.has_value();
+        shadowed_ = land || bed;
+        if (shadowed_) { // cells are the same
+            const scene::LandShadow& cells = land ? *land : *bed;
+            std::vector<glm::vec2> heights(cells.height_m.size(), glm::vec2(-1e9f));
+            for (std::size_t i = 0; i < heights.size(); ++i) {
+                if (land)
+                    heights[i].x = float(double(land->height_m[i]) - scene_.ground.offset_m);
+                if (bed)
+                    heights[i].y = float(double(bed->height_m[i]) - scene_.ground.offset_m);
+            }
+            land_shadow_ = gpu::Texture2D(GL_RG32F, cells.cols, cells.rows, 1, gpu::Filter::linear,
+                                          "shadow of land and bed");
+            land_shadow_.upload(GL_RG, GL_FLOAT, heights.data());
+            shadow_softness_m_ = land ? land->softness_m : 1.0;
+            bed_softness_m_ = bed ? bed->softness_m : 1.0;
         }
     }
     block_.sun_irradiance.w = float(shadow_softness_m_);
+    block_.sky_irradiance.w = float(bed_softness_m_);
     if (shadowed_)
         land_shadow_.bind(TARN_TEXTURE_LAND_SHADOW);
 }

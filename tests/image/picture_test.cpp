@@ -189,6 +189,43 @@ TEST(Picture, LandShadesTheWaterItself) {
 // at 3.912 / c (Koschmieder 1924), with c where the water lets through most; and a little sooner,
 // since what the eye takes together is less clear elsewhere. (Pure water is far clearer in the blue
 // than in the green that counts most.)
+// A wall on the bed in milky water, the sun low beside it: the water behind it is dark, as the
+// reference says, from below, from above, and in shafts of moving water; scenes without such walls
+// ask for nothing.
+TEST(Picture, TheBedShadesTheWater) {
+    test_support::context();
+    scene::Scene scene = scene::tank(); // bed at -8 m
+    scene.optics.absorption_per_m = {0.06, 0.03, 0.04};
+    scene.optics.backscattering_per_m = glm::dvec3(0.02);
+    scene.optics.bands.clear();
+    const glm::dvec3 sun = glm::normalize(glm::dvec3(0.9, 0.1, 0.45));
+    const glm::dvec3 below = -glm::refract(-sun, glm::dvec3(0, 0, 1), 1.0 / 1.333);
+    EXPECT_FALSE(scene::bed_shadow(scene::bowl(129), below));
+    for (int row = 70; row < 131; ++row) // 4 m thick, 7 m high
+        for (int col = 98; col < 103; ++col)
+            scene.ground.codes[{col, row}] =
+                std::uint16_t(std::lround((-1.0 - scene.ground.offset_m) / scene.ground.scale_m));
+    EXPECT_TRUE(scene::bed_shadow(scene, below));
+    render::Renderer renderer(scene);
+    scene::View view;
+    view.lighting = scene::clear_sky(sun);
+    view.lighting.sun_disc = false;
+    view.settings = {.width_px = 72, .height_px = 54, .samples = 4};
+    for (const auto& camera :
+         {scene::look({-6, -45, -3}, 0, -5, 60), scene::look({-16, -40, 5}, 10, -35, 50)}) {
+        view.camera = camera;
+        view.settings.shadows = true;
+        const Image got = renderer.draw(view), expected = reference::trace(scene, view, {});
+        const image::Difference d = image::compare(got, expected);
+        view.settings.shadows = false;
+        const double without = image::compare(renderer.draw(view), expected).mean_relative;
+        std::printf("bed's shadow: mean %.3f %%, 99th %.2f %%; without any shadow %.1f %%\n",
+                    100 * d.mean_relative, 100 * d.p99_relative, 100 * without);
+        EXPECT_LT(d.mean_relative, 0.01);
+        EXPECT_GT(without, 4.0 * d.mean_relative);
+    }
+}
+
 // A lake that the data cut, from outside: an aquarium without its glass, as the reference sees it;
 // from inside the water goes on.
 TEST(Picture, CutWaterIsSeenThroughItsSide) {
