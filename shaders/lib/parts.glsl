@@ -239,7 +239,8 @@ float lit_share(sampler2D land_shadow, ViewBlock view, Part part, float t, vec3 
 #ifdef TARN_BED_SHADOW
     vec2 here = part.base + part.origin.xy + t * vec2(part.direction.x, -part.direction.y) / view.grid.z;
     float bed = textureLod(land_shadow, here / (view.grid.xy - 1.0), 0.0).y;
-    lit *= clamp((part.origin.z + t * part.direction.z - bed) / view.sky_irradiance.w + 0.5, 0.0, 1.0);
+    if (part.bed_known) // else there is none
+        lit *= clamp((part.origin.z + t * part.direction.z - bed) / view.sky_irradiance.w + 0.5, 0.0, 1.0);
 #endif
     return lit;
 }

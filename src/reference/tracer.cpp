@@ -605,7 +605,8 @@ private:
             light_.sky_irradiance * medium_.sky_entering() * sky_slant *
                 medium_.path_radiance(sky_slant, start_depth, -direction.z, water_before_m, at) +
             (up > 0.0 ? sun_irradiance_below_ *
-                            sun_scattered(origin, direction, start_depth, water_before_m, at)
+                            sun_scattered(origin, direction, start_depth, water_before_m, at,
+                                          lake->bed_known)
                       : glm::dvec3(0.0));
         return glm::mix(radiance, mark, cover);
     }
@@ -753,7 +754,7 @@ private:
             medium_.path_radiance(sky_slant, depth, -direction.z, water_before_m, length);
         if (light_.sun_direction.z > 0.0)
             out += sun_irradiance_below_ *
-                   sun_scattered(origin, direction, depth, water_before_m, length);
+                   sun_scattered(origin, direction, depth, water_before_m, length, lake.bed_known);
         const double water_m = water_before_m + length;
         const bool lit = settings_.dive_light_cd > 0.0 && before_m == 0.0;
         if (lit)
@@ -781,7 +782,7 @@ private:
     /// The sun's light that the water scatters into a part of the view: what lies in the sun,
     /// shafts and all.
     glm::dvec3 sun_scattered(glm::dvec3 origin, glm::dvec3 direction, double depth, double before_m,
-                             double length) const {
+                             double length, bool bed_known) const {
         const double slant = 1.0 / sun_below_.z, sink = -direction.z;
         const bool shafts = tiles_ && settings_.shaft_steps > 0;
         const auto between = [&](double from, double to) {
@@ -801,7 +802,7 @@ private:
             const glm::dvec3 enters = origin + t * direction + deep / sun_below_.z * sun_below_;
             if (settings_.shadows &&
                 (blocked(enters + glm::dvec3(0, 0, lift_m_), light_.sun_direction, infinity) ||
-                 blocked(origin + t * direction, sun_below_, deep / sun_below_.z))) {
+                 (bed_known && blocked(origin + t * direction, sun_below_, deep / sun_below_.z)))) {
                 if (!shafts && from > lit_from)
                     sum += between(lit_from, from);
                 lit_from = to;
