@@ -411,36 +411,36 @@ struct Shaded {
 // One facet a sample says whether land or sky is mirrored: a coin that is tossed. Pixels around that have the same
 // facets have tossed it, too; each takes the mean of theirs, by how likely their slopes are its own.
 const int share_reach = 2;
-shared uint shared_land[3 * 64]; // what land changes and the spread of slopes as halves, mean slopes; spread 0: none
-shared uint shared_any;          // is there land to be shared?
+shared vec4 shared_land[64];  // xyz: what land changes, w: spread of slopes, 0: does not glitter
+shared uint shared_means[64]; // mean slopes, as halves
+shared uint shared_any;       // is there land to be shared?
 
 void share_land(vec3 land, vec2 mean, float spread) {
     uint i = gl_LocalInvocationIndex;
-    shared_land[i] = packHalf2x16(land.xy);
-    shared_land[64u + i] = packHalf2x16(vec2(land.z, spread));
-    shared_land[128u + i] = packHalf2x16(mean);
+    shared_land[i] = vec4(land, spread);
+    shared_means[i] = packHalf2x16(mean);
     if (any(notEqual(land, vec3(0.0))))
         shared_any = 1u;
 }
 
 vec3 land_around() {
     uint own = gl_LocalInvocationIndex;
-    float own_spread = unpackHalf2x16(shared_land[64u + own]).y;
+    float own_spread = shared_land[own].w;
     if (shared_any == 0u || own_spread == 0.0)
         return vec3(0.0);
-    vec2 own_mean = unpackHalf2x16(shared_land[128u + own]);
+    vec2 own_mean = unpackHalf2x16(shared_means[own]);
     ivec2 here = ivec2(gl_LocalInvocationID.xy);
     vec3 sum = vec3(0.0);
     float weights = 0.0;
     ivec2 low = max(here - share_reach, ivec2(0)), high = min(here + share_reach, ivec2(7));
     for (int y = low.y; y <= high.y; ++y)
         for (int x = low.x; x <= high.x; ++x) {
-            int i = y * 8 + x;
-            vec2 last = unpackHalf2x16(shared_land[64 + i]), off = unpackHalf2x16(shared_land[128 + i]) - own_mean;
-            if (last.y == 0.0)
+            vec4 other = shared_land[y * 8 + x];
+            vec2 off = unpackHalf2x16(shared_means[y * 8 + x]) - own_mean;
+            if (other.w == 0.0)
                 continue;
-            float weight = max(1.0 - dot(off, off) / (own_spread + last.y), 1e-3);
-            sum += weight * vec3(unpackHalf2x16(shared_land[i]), last.x);
+            float weight = max(1.0 - dot(off, off) / (own_spread + other.w), 1e-3);
+            sum += weight * other.xyz;
             weights += weight;
         }
     return sum / weights;
@@ -525,6 +525,10 @@ Shaded shade_pixel(ivec2 local, ivec2 pixel) {
 #endif
             vec3 brought = part_radiance(part, end, first_end.t, water_m, sunlit);
 #ifdef TARN_SPACE_LINES
+#ifdef TARN_WAVES
+            if (wavy && number == 1 && (end.flags & end_ground) == 0u) // the sun is in what is mirrored
+                brought = sky_radiance(sky_table, part.direction, view.sun.xyz);
+#endif
             SpaceMark mark = mark_before(part, end.t, first_end.t);
             if (mark.cover > 0.0) {
                 vec3 marked_so = mark_radiance(part, mark, first_end.t, water_m, sunlit);
@@ -540,6 +544,12 @@ Shaded shade_pixel(ivec2 local, ivec2 pixel) {
                 continue;
             }
 #endif
+#ifdef TARN_WAVES
+            if (wavy && number == 1) { // no darker than nothing
+                radiance += max(beside + brought, -max(radiance, vec3(0.0)));
+                continue;
+            }
+#endif
             radiance += beside + brought;
         }
     }
@@ -550,7 +560,8 @@ Shaded shade_pixel(ivec2 local, ivec2 pixel) {
 void main() {
     ivec2 local = ivec2(gl_GlobalInvocationID.xy), pixel = pixel_of(view, local);
 #ifdef TARN_SHARED_LAND
-    shared_land[64u + gl_LocalInvocationIndex] = 0u;
+    shared_land[gl_LocalInvocationIndex] = vec4(0.0);
+    shared_means[gl_LocalInvocationIndex] = 0u;
     if (gl_LocalInvocationIndex == 0u)
         shared_any = 0u;
     barrier();
@@ -558,7 +569,7 @@ void main() {
     Shaded own = shade_pixel(local, pixel);
 #ifdef TARN_SHARED_LAND
     barrier();
-    own.radiance = max(own.radiance + land_around(), vec3(0.0)); // a sample's land may hide more sky than there is
+    own.radiance += max(land_around(), -max(own.radiance, vec3(0.0))); // land may hide more sky than there is
 #endif
     if (!own.mine)
         return;

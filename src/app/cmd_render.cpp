@@ -74,6 +74,11 @@ void draw_strips(render::Renderer& renderer, scene::View view, int rows,
 
 int run_render(Words& words, scene_files::OptionList options) {
     check_outputs(words.outputs);
+    if (!words.error_map.empty()) {
+        check_outputs({words.error_map});
+        if (std::filesystem::path(words.error_map).extension() != ".png")
+            throw Error("--error-map '" + words.error_map + "': maps are .png");
+    }
     words.plan.budget.validate();
     if (!words.plan.budget.asked() && (words.plan.explain || words.measure_plan))
         throw Error("--explain and --measure need something to plan for",
@@ -93,10 +98,13 @@ int run_render(Words& words, scene_files::OptionList options) {
         view.settings.walk == scene::Walk::safety_radius)
         scene.safety_radii = scene_files::load_safety_radii(words.scene, scene);
     const Progress progress = console_progress();
-    const bool in_strips = strip_rows(words.picture, view.settings) < view.settings.height_px;
-    if (in_strips && (words.reference || !words.against.empty() || words.measure_plan))
-        throw Error("a picture in strips cannot be drawn with --reference, --against or --measure",
-                    "choose a smaller --size, of 33 million pixels at most, and no --strip-rows");
+    const bool needs_whole = words.reference || !words.against.empty() || words.plan.budget.asked();
+    const bool in_strips = strip_rows(words.picture, view.settings) < view.settings.height_px &&
+                           (words.picture.strip_rows > 0 || !needs_whole);
+    if (in_strips && needs_whole)
+        throw Error("--strip-rows does not go with --reference, --against, --max-error and "
+                    "--frame-time: they need the picture whole",
+                    "leave it out");
     Image picture;
     std::string device;
     std::vector<PictureFile> files;
@@ -201,6 +209,9 @@ void add_render(CLI::App& app, Run& run) {
     c->add_flag(
         "--measure", words->measure_plan,
         "as --explain, and draw everything at its best, too: the plan's true error and time");
+    c->add_option("--strip-rows", words->picture.strip_rows,
+                  "draw and write so many rows at a time, a multiple of 8: for little memory; "
+                  "default: all of them up to 33 million pixels, then 16 million pixels");
     c->add_flag("--reference", words->reference,
                 "by the double-precision CPU tracer: slow, needs no GPU");
     c->add_option("--against", words->against, "print how far the picture is from this .exr");

@@ -152,9 +152,6 @@ void add_picture_options(CLI::App& c, PictureWords& w) {
         ->capture_default_str();
     c.add_flag("--caption", w.caption, "below a .png a bar with place, level, date and scale");
     c.add_flag("--labels", w.labels, "names of the layers' points beside them, in a .png");
-    c.add_option("--strip-rows", w.strip_rows,
-                 "draw and write so many rows at a time, a multiple of 8: for little memory; "
-                 "default: all of them up to 33 million pixels, then 16 million pixels");
     c.add_flag("--sidecar", w.sidecar,
                "beside the picture a .json that --settings makes it again from");
 }

@@ -93,15 +93,24 @@ struct RowWriter::File {
 
     File(const fs::path& p, const OIIO::ImageSpec& s)
         : path(p), partial(partial_name(p)), spec(s), disk(partial) {
-        out = OIIO::ImageOutput::create(partial.string());
-        if (!disk.good() || !out || !out->set_ioproxy(&disk) || !out->open(partial.string(), spec))
-            fail();
+        try {
+            out = OIIO::ImageOutput::create(partial.string());
+            if (!disk.good() || !out || !out->set_ioproxy(&disk) ||
+                !out->open(partial.string(), spec))
+                fail();
+        } catch (...) {
+            remove_partial();
+            throw;
+        }
     }
     File(const File&) = delete;
     File& operator=(const File&) = delete;
     ~File() {
-        if (finished)
-            return;
+        if (!finished)
+            remove_partial();
+    }
+
+    void remove_partial() {
         out.reset(); // it may still write
         std::error_code ignored;
         fs::remove(partial, ignored);

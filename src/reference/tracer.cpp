@@ -229,15 +229,20 @@ private:
     /// would go on in the ground.
     std::optional<double> level_at(glm::dvec3 p) const {
         const Heightfield& w = scene_.water;
-        const double col = w.col(p.x), row = w.row(p.y);
-        if (!(col >= 0.0 && row >= 0.0 && col <= w.size().cols - 1 && row <= w.size().rows - 1))
+        constexpr double slack = 1e-6; // places on the border may lie a rounding outside
+        const double last_col = w.size().cols - 1, last_row = w.size().rows - 1;
+        double col = w.col(p.x), row = w.row(p.y);
+        if (!(col >= -slack && row >= -slack && col <= last_col + slack && row <= last_row + slack))
             return {};
+        col = std::clamp(col, 0.0, last_col);
+        row = std::clamp(row, 0.0, last_row);
         const int c = std::min(int(col), w.size().cols - 2),
                   r = std::min(int(row), w.size().rows - 2);
         for (int k = 0; k < 4; ++k)
             if (w.codes[{c + k % 2, r + k / 2}] == no_water_code)
                 return {};
-        return w.elevation_m(p.x, p.y);
+        return w.elevation_m(std::clamp(p.x, w.west_m, w.east_m()),
+                             std::clamp(p.y, w.south_m(), w.north_m));
     }
 
     /// The first of ground and moving water along a ray that has come near the water, by small
@@ -604,9 +609,8 @@ private:
             albedo / pi * irradiance +
             light_.sky_irradiance * medium_.sky_entering() * sky_slant *
                 medium_.path_radiance(sky_slant, start_depth, -direction.z, water_before_m, at) +
-            (up > 0.0 ? sun_irradiance_below_ *
-                            sun_scattered(origin, direction, start_depth, water_before_m, at,
-                                          lake->bed_known)
+            (up > 0.0 ? sun_irradiance_below_ * sun_scattered(origin, direction, start_depth,
+                                                              water_before_m, at, lake->bed_known)
                       : glm::dvec3(0.0));
         return glm::mix(radiance, mark, cover);
     }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace tarn::render {
@@ -214,6 +215,11 @@ void Renderer::prepare(const scene::View& view) {
     const double half = std::tan(0.5 * camera.fov_deg * degree);
     const double pixel_rad = 2.0 * half / settings.height_px;
     const int rows = settings.rows_drawn();
+    constexpr std::int64_t most_px = std::int64_t(1) << 27; // 2 GiB of radiance
+    if (std::int64_t(rows) * settings.width_px > most_px)
+        throw Error(text("a picture of ", std::int64_t(rows) * settings.width_px,
+                         " pixels cannot be held whole"),
+                    "choose a smaller --size; tarn render draws large ones in strips");
     const glm::dvec3& p = camera.position;
     const double col = ground.col(p.x), row = ground.row(p.y);
     // Walks count cells in float from beside the camera: up to 2^22 of them they are whole numbers.
@@ -311,7 +317,7 @@ void Renderer::prepare(const scene::View& view) {
         beams_ =
             gpu::Texture2D(GL_R32F, tiles_across, tiles_down, 1, gpu::Filter::nearest, "beams");
     // As wide as the picture, as high as the limit allows.
-    const int tile_rows = std::min(rows, std::max(8, tile_pixels / settings.width_px));
+    const int tile_rows = std::min(rows, std::max(8, tile_pixels / settings.width_px / 8 * 8));
     if (hits_[0].width_px() != settings.width_px || hits_[0].height_px() != tile_rows)
         for (gpu::Texture2D& hits : hits_)
             hits = gpu::Texture2D(GL_RGBA32UI, settings.width_px, tile_rows, 1,

@@ -212,8 +212,8 @@ void Renderer::upload_water(bool spectral) {
     water_.bind(TARN_TEXTURE_WATER);
 }
 
-// Which water the sun's light comes into, by where it enters; where land hides none of it, no
-// program asks.
+// Which water the sun's light comes into, by where it enters; where neither land nor bed hides
+// any of it, no program asks.
 void Renderer::prepare_land_shadow(const scene::View& view) {
     const glm::dvec3 sun = view.lighting.sun_direction;
     const glm::dvec3 light = view.lighting.sun_irradiance;

@@ -21,7 +21,7 @@ std::vector<ShownLabel> shown_labels(const Scene& scene, const Camera& camera, d
         if (on == (flooded ? DrapeOn::dry : DrapeOn::flooded))
             continue;
         // One that lies on ground or water is met there, not behind.
-        const auto seen = sighting_of(scene, camera.position, label.place);
+        const auto seen = sighting_of(scene, camera.position, label.place, false);
         if (!seen)
             continue;
         const double depth = glm::dot(seen->towards, camera.forward);
@@ -32,7 +32,8 @@ std::vector<ShownLabel> shown_labels(const Scene& scene, const Camera& camera, d
                      y = 0.5 - 0.5 * glm::dot(seen->towards, camera.up) / (depth * half);
         if (!(x >= 0.0 && x < 1.0 && y >= 0.0 && y < 1.0))
             continue;
-        if (!(distance_at(x, y) < 0.97 * seen->distance_m))
+        if (!(distance_at(x, y) < 0.97 * seen->distance_m) &&
+            sighting_of(scene, camera.position, label.place))
             out.push_back({x, y, label.text});
     }
     return out;

@@ -1,6 +1,7 @@
 #include "scene/map_layers.hpp"
 
 #include "core/error.hpp"
+#include "core/text.hpp"
 #include "scene/drape.hpp"
 
 #include <algorithm>
@@ -33,6 +34,10 @@ void hang_layers(Scene& scene, const std::vector<MapLayer>& layers) {
             if (layer.heights) {
                 const auto made = make_strokes(scene, layer.shapes, *layer.heights);
                 strokes.insert(strokes.end(), made.begin(), made.end());
+                if (strokes.size() > most_strokes)
+                    throw Error(
+                        text("with it lines in space have more than ", most_strokes, " pieces"),
+                        "cut or simplify them first, with ogr2ogr -clipsrc say");
             }
             for (std::size_t i = 0; i < layer.labels.size(); ++i) {
                 const glm::dvec3& p = layer.shapes.points[i];

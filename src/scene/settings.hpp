@@ -91,7 +91,6 @@ struct RenderSettings {
                          ///< water's surface a picture is half in, half out of it
     std::optional<bool> earth_curvature; ///< nothing: where it shows (scene/curvature.hpp)
     std::optional<double> ground_albedo; ///< lab: one grey for all ground, [0, 1]
-    // What maps draw; nothing costs nothing. The reference leaves it out.
     /// Rows that are drawn in place of the whole picture, which is as without: for pictures too
     /// large to be held whole. Only the GPU's renderer knows of it.
     struct Strip {
@@ -99,6 +98,7 @@ struct RenderSettings {
     };
     std::optional<Strip> strip;
     int rows_drawn() const { return strip ? strip->rows : height_px; }
+    // What maps draw; nothing costs nothing. The reference leaves contours and colours out.
     std::optional<double> contours_m;       ///< interval on land, heights of the datum, [.01, 1e4]
     std::optional<double> depth_contours_m; ///< interval on beds, depths, [.01, 1e4]
     std::optional<double> depth_colours_m;  ///< water is a sheet in the colours of its depth, the

@@ -12,7 +12,6 @@ namespace tarn::scene {
 
 namespace {
 
-constexpr std::size_t most_strokes = std::size_t(1) << 22;
 constexpr float line_px = 2.4f, point_px = 9.0f;
 
 /// Height of the ground, of its border outside.
@@ -100,7 +99,7 @@ double sign_irradiance(const Scene& scene, const View& view) {
 }
 
 std::optional<Sighting> sighting_of(const Scene& scene, const glm::dvec3& camera,
-                                    const glm::dvec3& place) {
+                                    const glm::dvec3& place, bool look_for_ground) {
     const glm::dvec2 across(place - camera);
     const double away_m = glm::length(across);
     const Heightfield& g = scene.ground;
@@ -112,7 +111,7 @@ std::optional<Sighting> sighting_of(const Scene& scene, const glm::dvec3& camera
         glm::dvec3 seen = place;
         if (!camera_wet)
             seen.z -= bend_per_m * away_m * away_m;
-        if (ground_between(scene, camera, place, !camera_wet))
+        if (look_for_ground && ground_between(scene, camera, place, !camera_wet))
             return std::nullopt;
         const double distance = glm::length(seen - camera);
         if (!(distance > 0.0))
@@ -140,8 +139,8 @@ std::optional<Sighting> sighting_of(const Scene& scene, const glm::dvec3& camera
     const glm::dvec3 surface(foot, level);
     const auto water = scene.water_level_m(surface.x, surface.y);
     if (!water || std::abs(*water - level) > 0.01 ||
-        ground_between(scene, camera, surface, !camera_wet) ||
-        ground_between(scene, surface, place, camera_wet))
+        (look_for_ground && (ground_between(scene, camera, surface, !camera_wet) ||
+                             ground_between(scene, surface, place, camera_wet))))
         return std::nullopt;
     glm::dvec3 seen = surface;
     if (!camera_wet)

@@ -6,6 +6,9 @@
 
 namespace tarn::scene {
 
+/// Pieces that all lines together may have: 96 MiB on the GPU, of the 128 that OpenGL promises.
+constexpr std::size_t most_strokes = std::size_t(1) << 21;
+
 /// What heights of shapes count from.
 enum class HeightsFrom {
     datum, ///< the scene's vertical datum
@@ -25,7 +28,7 @@ glm::dvec3 place_in_space(const Scene& scene, const glm::dvec3& vertex, HeightsF
 
 /// Lines are straight between their vertices; those that count from the ground follow it, in pieces
 /// as long as its spacing. Nothing is cut at the scene's border.
-/// @throws tarn::Error  as place_in_space(), and where there are more than 2^22 pieces
+/// @throws tarn::Error  as place_in_space(), and where there are more than most_strokes pieces
 std::vector<SpaceStroke> make_strokes(const Scene& scene, const SpaceShapes& shapes,
                                       HeightsFrom from);
 
@@ -41,7 +44,8 @@ struct Sighting {
 };
 /// Nothing where land or bed hides the place, or all light is reflected on the way. Waves are left
 /// out.
+/// @param look_for_ground  false: only what bends and mirrors light counts, which is quick
 std::optional<Sighting> sighting_of(const Scene& scene, const glm::dvec3& camera,
-                                    const glm::dvec3& place);
+                                    const glm::dvec3& place, bool look_for_ground = true);
 
 } // namespace tarn::scene

@@ -409,7 +409,7 @@ void measure_panel(Session& session, PanelState& state, Requests& asked) {
     ImGui::Checkbox("in space, at its own heights", &state.layer_in_space);
     const bool in_space = std::any_of(session.layers.begin(), session.layers.end(),
                                       [](const auto& layer) { return layer.heights.has_value(); });
-    if (in_space) {
+    if (in_space || state.layer_in_space) {
         static const char* from[] = {"datum", "level", "ground"};
         const std::string now = session.option("layers-3d-heights", "datum");
         if (ImGui::BeginCombo("heights from", now.c_str())) {

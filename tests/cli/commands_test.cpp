@@ -168,7 +168,11 @@ TEST(Render, StripsMakeTheSameFiles) {
         image::compare(image::read_exr(t / "a.exr"), image::read_exr(t / "b.exr"));
     EXPECT_LT(d.p99_relative, 1e-3);
     expect_one_line(command + " --strip-rows 30 -o " + at("c.png"), 1, "--strip-rows is 30");
-    expect_one_line(command + " --strip-rows 32 --reference -o " + at("c.png"), 1, "in strips");
+    expect_one_line(command + " --strip-rows 32 --reference -o " + at("c.png"), 1,
+                    "need the picture whole");
+    expect_one_line(command + " --against " + at("a.exr") + " --error-map map.xyz -o " +
+                        at("c.png"),
+                    1, "map.xyz");
     EXPECT_FALSE(std::filesystem::exists(t / "c.png"));
 }
 

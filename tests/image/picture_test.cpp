@@ -185,10 +185,6 @@ TEST(Picture, LandShadesTheWaterItself) {
     }
 }
 
-// How far a black thing is seen level ahead, 2 m down: its contrast with the water falls to .02
-// at 3.912 / c (Koschmieder 1924), with c where the water lets through most; and a little sooner,
-// since what the eye takes together is less clear elsewhere. (Pure water is far clearer in the blue
-// than in the green that counts most.)
 // A wall on the bed in milky water, the sun low beside it: the water behind it is dark, as the
 // reference says, from below, from above, and in shafts of moving water; scenes without such walls
 // ask for nothing.
@@ -310,6 +306,10 @@ TEST(Picture, StripsAreTheWhole) {
     EXPECT_THROW(reference::trace(scene, view, {}), Error);
 }
 
+// How far a black thing is seen level ahead, 2 m down: its contrast with the water falls to .02
+// at 3.912 / c (Koschmieder 1924), with c where the water lets through most; and a little sooner,
+// since what the eye takes together is less clear elsewhere. (Pure water is far clearer in the blue
+// than in the green that counts most.)
 TEST(Picture, ABlackThingInTheWaterIsSeenAsFarAsItsAttenuationSays) {
     test_support::context();
     for (const char* name : {"pure", "clear lake", "mesotrophic lake", "eutrophic lake",
