@@ -150,11 +150,14 @@ Surface calm_surface(sampler2D heights, ViewBlock view, Part first, End end) {
 #endif
 }
 
+// So far below its surface, water that is met from the air is met at a side of the scene's block [m].
+const float cut_tolerance_m = 0.01;
+
 // at_cut — whether a path has come from outside through the side of the block that the scene is cut out of, and met the
 //          water of a lake that is cut, too: as the pane of an aquarium shows it, but for the glass.
 bool at_cut(ViewBlock view, Part first, End end, float level) {
 #ifdef TARN_CUT_WATER
-    return !first.in_water && height_after(view, first, end.t) < level - 0.01 - 2.0 * view.offset.w;
+    return !first.in_water && height_after(view, first, end.t) < level - cut_tolerance_m - 2.0 * view.offset.w;
 #else
     return false;
 #endif

@@ -48,6 +48,8 @@ const float inverse_pi = 0.318309886184;
 const float sky_slant = 1.19;
 // White in an aerial picture is no albedo of 1: pictures are exposed for mid grey.
 const float photo_albedo = 0.7;
+// Of vector layers, draped or in space.
+const vec3 layer_colour = vec3(0.85, 0.18, 0.05);
 
 bool on(uint flag) { return (view.counts.z & flag) != 0u; }
 
@@ -93,12 +95,18 @@ vec3 sunlight_left(float way_m, Sunlit sunlit) {
 // Light that is scattered wide comes from around a place as wide as this share of its path: some 12 degrees.
 const float scattered_spread = 0.2;
 
-// Share of the light from a place in the water that still draws its patterns.
-float pattern_left(float path_m) {
+// Share of the light that comes through so much water, by luminance.
+//
+//   drawn   as much of the light as has not been scattered ...
+//   path_m  ... of what is left after that path
+float drawn_share(vec3 drawn, float path_m) {
     const vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
-    float drawn = dot(luminance, pattern_transmittance(water, view.water, path_m));
-    return clamp(drawn / max(dot(luminance, transmittance(water, view.water, path_m)), 1e-9), 0.0, 1.0);
+    float left = dot(luminance, transmittance(water, view.water, path_m));
+    return clamp(dot(luminance, drawn) / max(left, 1e-9), 0.0, 1.0);
 }
+
+// Share of the light from a place in the water that still draws its patterns.
+float pattern_left(float path_m) { return drawn_share(pattern_transmittance(water, view.water, path_m), path_m); }
 
 #ifdef TARN_MAP
 // Contours and draped lines over an albedo.
@@ -116,7 +124,7 @@ vec3 marked(vec3 albedo, vec2 nodes, float z, bool in_water, float level, float 
         vec2 at = (nodes - view.drape.xy) / (view.drape.z * vec2(textureSize(drape, 0)));
         if (all(greaterThan(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)))) {
             float near = textureLod(drape, at, 0.0).r;
-            albedo = mix(albedo, vec3(0.85, 0.18, 0.05), drape_cover(near, view.drape.w, 2.4, footprint));
+            albedo = mix(albedo, layer_colour, drape_cover(near, view.drape.w, 2.4, footprint));
         }
     }
     return albedo;
@@ -153,7 +161,7 @@ vec3 ground_radiance(Part part, End end, float path_m, float water_m, Sunlit sun
     vec4 corners = textureGather(heights, (vec2(end.cell) + 1.0) * view.inverse_size.xy, 0) * view.heights.y;
     bool cut = z < bilinear(corners, end.inside) - view.options.x;
 #ifdef TARN_CUT_WATER
-    cut = cut || z < surface_level(heights, view, part, end) - 0.01; // the rim of a bed, not dry land
+    cut = cut || z < surface_level(heights, view, part, end) - cut_tolerance_m; // the rim of a bed, not dry land
 #endif
     if (!part.in_water && cut) {
         // The side of the block that the scene is cut out of.
@@ -267,9 +275,7 @@ vec3 overlay_radiance(Part part, End end, vec3 radiance) {
     if (!part.in_water)
         return radiance;
     vec3 drawn = image_transmittance(water, view.water, end.t);
-    const vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
-    float left = dot(luminance, transmittance(water, view.water, end.t));
-    float blurred = 1.0 - clamp(dot(luminance, drawn) / max(left, 1e-9), 0.0, 1.0);
+    float blurred = 1.0 - drawn_share(drawn, end.t);
     return drawn * radiance + blurred * scattered_radiance(part, end.t, max(reach(view, part), end.t), 0.0, 1.0);
 }
 
@@ -304,12 +310,11 @@ vec3 part_radiance(Part part, End end, float before_m, float water_m, Sunlit sun
 //   mark     its share of the pixel is made less by the water
 //   water_m  path in the water before the part
 vec3 mark_radiance(Part part, inout SpaceMark mark, float before_m, float water_m, Sunlit sunlit) {
-    const vec3 albedo = vec3(0.85, 0.18, 0.05), luminance = vec3(0.2126, 0.7152, 0.0722);
     if (view.diver.w > 0.0)
-        return albedo * inverse_pi * view.diver.w;
+        return layer_colour * inverse_pi * view.diver.w;
     vec3 sky_light = view.sky_irradiance.rgb, sun_light = view.sun_irradiance.rgb;
     if (!part.in_water) {
-        vec3 radiance = albedo * inverse_pi * 0.5 * (sky_light + max(view.sun.z, 0.0) * sun_light);
+        vec3 radiance = layer_colour * inverse_pi * 0.5 * (sky_light + max(view.sun.z, 0.0) * sun_light);
 #ifdef TARN_HAZE
         radiance = through_air(part, mark.t, radiance);
 #endif
@@ -324,10 +329,8 @@ vec3 mark_radiance(Part part, inout SpaceMark mark, float before_m, float water_
         irradiance += 0.5 * lamp_intensity(part.direction) * transmittance(water, view.water, 2.0 * mark.t) /
                       (mark.t * mark.t + view.diver.z * view.diver.z);
 #endif
-    float drawn = dot(luminance, image_transmittance(water, view.water, way_m)),
-          left = dot(luminance, transmittance(water, view.water, way_m));
-    mark.cover *= clamp(drawn / max(left, 1e-9), 0.0, 1.0);
-    return albedo * inverse_pi * irradiance + scattered_radiance(part, 0.0, mark.t, water_m, sunlit.way);
+    mark.cover *= drawn_share(image_transmittance(water, view.water, way_m), way_m);
+    return layer_colour * inverse_pi * irradiance + scattered_radiance(part, 0.0, mark.t, water_m, sunlit.way);
 }
 
 // Does a part show lines in space, cut by the water's level?
@@ -399,6 +402,15 @@ vec3 depth_sheet(Part part, End end) {
     vec3 irradiance = 0.35 * (view.sky_irradiance.rgb + max(view.sun.z, 0.0) * view.sun_irradiance.rgb);
     return albedo * inverse_pi * irradiance;
 }
+#endif
+
+// What is left of a change: one sample's land may hide more sky than there is in the mean.
+vec3 no_darker_than_nothing(vec3 radiance, vec3 change) { return max(change, -max(radiance, vec3(0.0))); }
+
+#ifdef TARN_SPACE_LINES
+const bool lines_hang = true;
+#else
+const bool lines_hang = false;
 #endif
 
 // A pixel's light, but for what a wavy surface mirrors of the land instead of the sky.
@@ -493,64 +505,42 @@ Shaded shade_pixel(ivec2 local, ivec2 pixel) {
             if (!wanted(view, part, number))
                 continue;
             End end = unpack_end(number == 1 ? imageLoad(hits[1], local) : imageLoad(hits[2], local));
-            vec3 beside = vec3(0.0); // what goes for what this part brings
+            vec3 instead = vec3(0.0); // what this part's light takes the place of
+            bool facet = false, met_land = (end.flags & end_ground) != 0u;
 #ifdef TARN_WAVES
-            if (wavy) {
-                if (number == 2) { // drawn by what facets let through
-                    part.weight = (1.0 - glitter.mirror) / (view.optics.x * view.optics.x);
-                } else {
-                    // The sky's mean is known; where the ray met land instead, that takes the place of the
-                    // sky in its direction.
-                    vec3 mirrored = glitter.sky + glitter.sun;
-#ifdef TARN_SPACE_LINES
-                    bool met_something = (end.flags & end_ground) != 0u || mark_before(part, end.t, first_end.t).cover > 0.0;
-#else
-                    bool met_something = (end.flags & end_ground) != 0u;
-#endif
-                    radiance += mirrored;
-                    if (!met_something) {
-#ifdef TARN_SHARED_LAND
-                        share_land(vec3(0.0), met.mean, met.taken.x + met.taken.z + 1e-6);
-#endif
-                        continue;
-                    }
-                    part.weight = met.bright / glitter.seen;
-                    beside = -part.weight * sky_radiance(sky_table, part.direction, view.sun.xyz);
-                }
+            if (wavy && number == 2) // drawn by what facets let through
+                part.weight = (1.0 - glitter.mirror) / (view.optics.x * view.optics.x);
+            // What facets mirror of sky and sun is known in the mean: one of them says only what stands before the sky.
+            facet = wavy && number == 1;
+            if (facet) {
+                radiance += glitter.sky + glitter.sun;
+                part.weight = met.bright / glitter.seen;
+                if (met_land || lines_hang)
+                    instead = sky_radiance(sky_table, part.direction, view.sun.xyz);
             }
 #endif
 #ifdef TARN_CAUSTICS
             if (part.in_water)
                 sunlit = sunlit_of(local, first.in_water ? 1 : 0);
 #endif
-            vec3 brought = part_radiance(part, end, first_end.t, water_m, sunlit);
+            vec3 brought = facet && !met_land ? instead : part_radiance(part, end, first_end.t, water_m, sunlit);
 #ifdef TARN_SPACE_LINES
-#ifdef TARN_WAVES
-            if (wavy && number == 1 && (end.flags & end_ground) == 0u) // the sun is in what is mirrored
-                brought = sky_radiance(sky_table, part.direction, view.sun.xyz);
-#endif
             SpaceMark mark = mark_before(part, end.t, first_end.t);
             if (mark.cover > 0.0) {
                 vec3 marked_so = mark_radiance(part, mark, first_end.t, water_m, sunlit);
                 brought = mix(brought, marked_so, mark.cover);
             }
 #endif
-            brought *= part.weight;
+            brought = part.weight * (brought - instead);
             if (!part.in_water && first.in_water)
                 brought *= remaining;
 #ifdef TARN_SHARED_LAND
-            if (wavy && number == 1) {
-                share_land(beside + brought, met.mean, met.taken.x + met.taken.z + 1e-6);
+            if (facet) {
+                share_land(brought, met.mean, met.taken.x + met.taken.z + 1e-6);
                 continue;
             }
 #endif
-#ifdef TARN_WAVES
-            if (wavy && number == 1) { // no darker than nothing
-                radiance += max(beside + brought, -max(radiance, vec3(0.0)));
-                continue;
-            }
-#endif
-            radiance += beside + brought;
+            radiance += facet ? no_darker_than_nothing(radiance, brought) : brought;
         }
     }
     shaded.radiance = radiance;
@@ -569,7 +559,7 @@ void main() {
     Shaded own = shade_pixel(local, pixel);
 #ifdef TARN_SHARED_LAND
     barrier();
-    own.radiance += max(land_around(), -max(own.radiance, vec3(0.0))); // land may hide more sky than there is
+    own.radiance += no_darker_than_nothing(own.radiance, land_around());
 #endif
     if (!own.mine)
         return;

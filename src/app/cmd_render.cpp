@@ -99,8 +99,9 @@ int run_render(Words& words, scene_files::OptionList options) {
         scene.safety_radii = scene_files::load_safety_radii(words.scene, scene);
     const Progress progress = console_progress();
     const bool needs_whole = words.reference || !words.against.empty() || words.plan.budget.asked();
-    const bool in_strips = strip_rows(words.picture, view.settings) < view.settings.height_px &&
-                           (words.picture.strip_rows > 0 || !needs_whole);
+    const int rows = strip_rows(words.picture, view.settings);
+    const bool in_strips =
+        rows < view.settings.height_px && (words.picture.strip_rows > 0 || !needs_whole);
     if (in_strips && needs_whole)
         throw Error("--strip-rows does not go with --reference, --against, --max-error and "
                     "--frame-time: they need the picture whole",
@@ -150,7 +151,7 @@ int run_render(Words& words, scene_files::OptionList options) {
             const Image overview = renderer.draw(scene::overview_of(view));
             for (const std::string& output : words.outputs)
                 files.emplace_back(output, words.picture, scene, view, record(), overview);
-            draw_strips(renderer, view, strip_rows(words.picture, view.settings), files, progress);
+            draw_strips(renderer, view, rows, files, progress);
         } else {
             picture =
                 renderer.draw(view, [&](double share) { progress.report(share, "rendering"); });

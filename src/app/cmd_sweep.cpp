@@ -1,6 +1,7 @@
 // `tarn sweep` — pictures of water-level scenarios: levels x cameras x times, and their figures.
 #include "app/command.hpp"
 #include "app/console.hpp"
+#include "app/layers.hpp"
 #include "app/picture.hpp"
 #include "app/plan_options.hpp"
 #include "app/scenario_map.hpp"

@@ -1,6 +1,7 @@
 // `tarn view` — the window.
 #include "app/command.hpp"
 #include "app/console.hpp"
+#include "app/layers.hpp"
 #include "app/picture.hpp"
 #include "app/plan_options.hpp"
 #include "app/view_options.hpp"
@@ -8,7 +9,6 @@
 #include "core/text.hpp"
 #include "dem/import.hpp"
 #include "dem/refill.hpp"
-#include "dem/vectors.hpp"
 #include "geo/frame.hpp"
 #include "gpu/context.hpp"
 #include "render/planner.hpp"
@@ -31,7 +31,7 @@ struct Words {
     ViewWords view;
     PictureWords picture;
     PlanWords plan;
-    std::string scene, pictures = ".", log;
+    std::string scene, pictures = ".", picture_format = "png", log;
     std::vector<std::string> layers;
     bool egl = false;
 };
@@ -88,12 +88,12 @@ scene_files::OptionList list_of(const view::Options& options) {
     return {options.begin(), options.end()};
 }
 
-/// A name that is not taken: tarn_001.png, tarn_002.png, ...
-std::string next_picture(const fs::path& folder) {
+/// A name that is not taken, with either ending: tarn_001.png, tarn_002.exr, ...
+std::string next_picture(const fs::path& folder, const std::string& format) {
     for (int i = 1; i < 100'000; ++i) {
-        const fs::path path = folder / ("tarn_" + numbered(i, 3) + ".png");
-        if (!fs::exists(path))
-            return path.string();
+        const std::string name = "tarn_" + numbered(i, 3);
+        if (!fs::exists(folder / (name + ".png")) && !fs::exists(folder / (name + ".exr")))
+            return (folder / (name + "." + format)).string();
     }
     throw Error(folder.string() + " is full of pictures", "choose another folder with --pictures");
 }
@@ -139,8 +139,8 @@ view::Services services_for(const std::string& folder, const scene::Scene& as_im
         Parsed parsed(options);
         return make_view(parsed.view, scene);
     };
-    out.command = [named, first](const view::Options& options) {
-        return first + command_of("render", named, list_of(options)) + " -o picture.png";
+    out.command = [named, first](const view::Options& options, const std::string& format) {
+        return first + command_of("render", named, list_of(options)) + " -o picture." + format;
     };
     out.record_command = [folder, named, first](const view::Options& options) {
         view::Options own = options;
@@ -161,10 +161,11 @@ view::Services services_for(const std::string& folder, const scene::Scene& as_im
     };
     out.begin_picture = [named, first, pictures = words.pictures](
                             const Image& overview, const scene::Scene& scene,
-                            const scene::View& view, const view::Options& options) {
+                            const scene::View& view, const view::Options& options,
+                            const std::string& format) {
         Parsed parsed(options);
         parsed.picture.sidecar = true;
-        const std::string path = next_picture(pictures);
+        const std::string path = next_picture(pictures, format);
         return std::make_unique<PictureOnDisk>(
             path, PictureFile(path, parsed.picture, scene, view,
                               {.scene = named,
@@ -306,7 +307,8 @@ int run_view(const Words& words, view::Options options) {
              .started = started,
              .plan = std::move(plan),
              .max_error = words.plan.budget.max_error.value_or(0.01),
-             .egl = words.egl});
+             .egl = words.egl,
+             .picture_format = words.picture_format});
         options.clear();
         first = false;
     }
@@ -323,6 +325,10 @@ void add_view(CLI::App& app, Run& run) {
         ->required();
     c->add_option("--pictures", words->pictures, "folder that F12 writes to")
         ->capture_default_str();
+    c->add_option("--picture-format", words->picture_format,
+                  "what F12 writes: png, or exr, linear with distances")
+        ->check(CLI::IsMember({"png", "exr"}))
+        ->capture_default_str();
     c->add_option("--session-log", words->log,
                   "file for what goes on, a JSON object a line: start, frames, levels, poses");
     c->add_flag("--egl", words->egl, "an EGL context instead of the platform's own");
@@ -337,8 +343,8 @@ void add_view(CLI::App& app, Run& run) {
             apply_settings_file(*c, words->view);
             view::Options options;
             for (const auto& [name, value] : given_options(*c))
-                if (name != "pictures" && name != "egl" && name != "session-log" &&
-                    name != "max-error" && name != "frame-time")
+                if (name != "pictures" && name != "picture-format" && name != "egl" &&
+                    name != "session-log" && name != "max-error" && name != "frame-time")
                     options[name] = value;
             return run_view(*words, options);
         };

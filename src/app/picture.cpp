@@ -72,9 +72,7 @@ Picture caption_bar(const Image& overview, const scene::Scene& scene, const scen
     // How long a bar is at what the middle of the picture shows: the scale changes over it.
     const double distance = distance_at(overview, 0.5, 0.5);
     if (std::isfinite(distance) && distance > 0.0) {
-        const double metre_px =
-            height_px /
-            (2.0 * std::tan(0.5 * view.camera.fov_deg * 3.14159265358979 / 180.0) * distance);
+        const double metre_px = 1.0 / (scene::pixel_rad(view.camera, height_px) * distance);
         const double length = round_length(0.12 * out.width_px / metre_px);
         const int px = int(std::lround(length * metre_px));
         const std::string label =

@@ -1,7 +1,6 @@
 #pragma once
 /// @file view_options.hpp  Camera, light and picture settings as people write them -> a View.
 #include "dem/refill.hpp"
-#include "scene/map_layers.hpp"
 #include "scene/settings.hpp"
 
 #include <CLI/App.hpp>
@@ -80,18 +79,6 @@ dem::Refill make_refill(const std::string& folder, const scene::Scene& scene, in
 /// Moves the level of a scene: its water, lakes and the bed that falls dry.
 /// @throws tarn::Error  if it cannot stand there
 void move_level(dem::Refill& refill, double level_m, scene::Scene& scene, bool shore);
-
-/// A vector file as a layer that is draped.
-/// @throws tarn::Error  naming the file
-scene::MapLayer read_layer(const std::string& path, const geo::Frame& frame);
-
-/// The layers that the words name, draped and in space.
-/// @throws tarn::Error  naming the file
-std::vector<scene::MapLayer> read_layers(const ViewWords& words, const geo::Frame& frame);
-
-/// Drapes layers, and hangs those in space.
-/// @throws tarn::Error  also where nothing that is to be draped lies on the scene
-void lay_layers(const std::vector<scene::MapLayer>& layers, scene::Scene& scene);
 
 /// "300:320:0.5" (both ends included) or "300,310,313.31": levels [m].
 /// @throws tarn::Error

@@ -91,8 +91,10 @@ struct RowWriter::File {
     int rows = 0; ///< written
     bool finished = false;
 
-    File(const fs::path& p, const OIIO::ImageSpec& s)
+    File(const fs::path& p, const OIIO::ImageSpec& s, const Metadata& metadata)
         : path(p), partial(partial_name(p)), spec(s), disk(partial) {
+        for (const auto& [key, value] : metadata)
+            spec.attribute(key, value);
         try {
             out = OIIO::ImageOutput::create(partial.string());
             if (!disk.good() || !out || !out->set_ioproxy(&disk) ||
@@ -143,9 +145,7 @@ RowWriter RowWriter::png(const fs::path& path, int width_px, int height_px, int 
     OIIO::ImageSpec spec(width_px, height_px, channels, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
     spec.attribute("png:compressionLevel", 6);
-    for (const auto& [key, value] : metadata)
-        spec.attribute(key, value);
-    return RowWriter(std::make_unique<File>(path, spec));
+    return RowWriter(std::make_unique<File>(path, spec, metadata));
 }
 
 RowWriter RowWriter::exr(const fs::path& path, int width_px, int height_px,
@@ -155,9 +155,7 @@ RowWriter RowWriter::exr(const fs::path& path, int width_px, int height_px,
     spec.z_channel = 3;
     spec.attribute("compression", "zip");
     spec.attribute("oiio:ColorSpace", "Linear");
-    for (const auto& [key, value] : metadata)
-        spec.attribute(key, value);
-    return RowWriter(std::make_unique<File>(path, spec));
+    return RowWriter(std::make_unique<File>(path, spec, metadata));
 }
 
 void RowWriter::add(const Picture& rows) {

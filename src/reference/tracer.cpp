@@ -34,6 +34,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Skylight in the water, as in docs/physics/water.md: mean slant after refraction of an even sky.
 constexpr double sky_slant = 1.19;
 
+// So far below its surface, water that is met from the air is met at a side of the scene's block.
+constexpr double cut_tolerance_m = 0.01;
+
 /// The water that a ray is in.
 struct Lake {
     double level_m;
@@ -442,7 +445,7 @@ private:
         if (hit.point.z < scene_.ground.elevation_m(hit.point.x, hit.point.y) - lift_m_)
             return true;
         const auto level = level_at(hit.point); // the rim of a bed that is cut is no dry land
-        return level && hit.point.z < *level - 0.01;
+        return level && hit.point.z < *level - cut_tolerance_m;
     }
 
     glm::dvec3 land(const Hit& hit, glm::dvec3 direction, double footprint) const {
@@ -639,7 +642,7 @@ private:
             return through_air(origin, direction, hit.t,
                                land(hit, direction, pixel_rad_ * (before_m + hit.t)));
         const double level = level_at(hit.point).value_or(met->level_m);
-        if (hit.point.z < level - 0.01 - 2.0 * (waves_ ? waves_->bound_m() : 0.0))
+        if (hit.point.z < level - cut_tolerance_m - 2.0 * (waves_ ? waves_->bound_m() : 0.0))
             return through_air(origin, direction, hit.t,
                                through_side(hit, direction, level, before_m, *chances));
         const Lake lake{met->level_m, scene_.lake_at_level(met->level_m).bed != Bed::unknown};

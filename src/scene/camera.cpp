@@ -42,6 +42,16 @@ double pixel_rad(const Camera& camera, int height_px) {
     return 2.0 * std::tan(0.5 * camera.fov_deg * degree) / height_px;
 }
 
+std::optional<glm::dvec2> picture_place(const Camera& camera, const glm::dvec3& direction,
+                                        double aspect) {
+    const double depth = glm::dot(direction, camera.forward);
+    if (!(depth > 1e-6 * glm::length(direction)))
+        return {};
+    const double half = depth * std::tan(0.5 * camera.fov_deg * degree);
+    return glm::dvec2(0.5 + 0.5 * glm::dot(direction, camera.right) / (half * aspect),
+                      0.5 - 0.5 * glm::dot(direction, camera.up) / half);
+}
+
 glm::dvec3 pixel_direction(const Camera& camera, double px, double py, int width_px,
                            int height_px) {
     const double half = std::tan(0.5 * camera.fov_deg * degree);

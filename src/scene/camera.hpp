@@ -1,6 +1,8 @@
 #pragma once
 /// @file camera.hpp  Where the picture is taken from.
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 
 namespace tarn::scene {
 
@@ -22,6 +24,12 @@ Camera look_along(glm::dvec3 position, glm::dvec3 direction, glm::dvec3 up, doub
 
 /// Angle of a pixel in the middle of a picture so many rows high [rad].
 double pixel_rad(const Camera& camera, int height_px);
+
+/// Place in a picture, (0, 0) top left to (1, 1), of what lies in a direction of any length;
+/// nothing behind the camera. May lie outside.
+/// @param aspect  width over height
+std::optional<glm::dvec2> picture_place(const Camera& camera, const glm::dvec3& direction,
+                                        double aspect);
 
 /// Direction, not normalised, through picture position (px, py) in pixels from the top left.
 glm::dvec3 pixel_direction(const Camera& camera, double px, double py, int width_px, int height_px);

@@ -40,6 +40,12 @@ bool ground_between(const Scene& scene, const glm::dvec3& a, const glm::dvec3& b
 
 } // namespace
 
+HeightsFrom heights_from(std::string_view words) {
+    return words == "level"    ? HeightsFrom::level
+           : words == "ground" ? HeightsFrom::ground
+                               : HeightsFrom::datum;
+}
+
 glm::dvec3 place_in_space(const Scene& scene, const glm::dvec3& vertex, HeightsFrom from) {
     if (from == HeightsFrom::datum) {
         if (std::isnan(vertex.z))

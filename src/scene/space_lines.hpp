@@ -2,6 +2,7 @@
 /// @file space_lines.hpp  Lines and points that hang in air and water, from the shapes of a map.
 #include "scene/settings.hpp"
 
+#include <string_view>
 #include <vector>
 
 namespace tarn::scene {
@@ -15,6 +16,9 @@ enum class HeightsFrom {
     level, ///< the water over or under a vertex; away from all water, the first lake
     ground ///< ground and bed
 };
+
+/// "datum", "level" or "ground", as --layers-3d-heights has it; anything else counts as the first.
+HeightsFrom heights_from(std::string_view words);
 
 /// A shape's vertices, z as the file says, NaN where it says none.
 struct SpaceShapes {

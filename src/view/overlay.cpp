@@ -19,13 +19,10 @@ namespace {
 std::optional<ImVec2> on_screen(const scene::Camera& c, const glm::dvec3& place, ImVec2 size) {
     glm::dvec3 to = place - c.position;
     to.z -= scene::bend_per_m * (to.x * to.x + to.y * to.y); // nothing, but far away
-    const double depth = glm::dot(to, c.forward);
-    if (depth <= 1e-3)
+    const auto at = scene::picture_place(c, to, double(size.x) / double(size.y));
+    if (!at)
         return std::nullopt;
-    const double half = std::tan(0.5 * c.fov_deg * 0.017453292519943295);
-    const double x = glm::dot(to, c.right) / (depth * half * size.x / size.y),
-                 y = glm::dot(to, c.up) / (depth * half);
-    return ImVec2(size.x * float(0.5 + 0.5 * x), size.y * float(0.5 - 0.5 * y));
+    return ImVec2(size.x * float(at->x), size.y * float(at->y));
 }
 
 void draw_north(const Session& session, ImVec2 middle, float radius) {
@@ -51,9 +48,8 @@ void draw_scale(const PanelState& state, const Session& session, ImVec2 size, fl
     // At what the pointer is on, else there is none.
     if (!state.pointer)
         return;
-    const double metre_px =
-        double(size.y) / (2.0 * std::tan(0.5 * session.flight.pose().fov_deg * 0.0174532925) *
-                          state.pointer->distance_m);
+    const double metre_px = 1.0 / (scene::pixel_rad(camera_of(session.flight.pose()), int(size.y)) *
+                                   state.pointer->distance_m);
     const double length = round_length(160.0 * double(scale) / metre_px);
     const auto px = float(length * metre_px);
     const ImVec2 end(size.x - 20 * scale, size.y - 44 * scale);

@@ -444,10 +444,18 @@ void picture_panel(Session& session, Requests& asked) {
     if (ImGui::Checkbox("caption", &caption))
         session.set("caption", caption ? "true" : "");
     ImGui::SameLine();
+    bool labels = session.flag("labels");
+    if (ImGui::Checkbox("names", &labels))
+        session.set("labels", labels ? "true" : "");
+    for (const char* format : {"png", "exr"}) {
+        if (ImGui::RadioButton(format, session.picture_format == format))
+            session.picture_format = format;
+        ImGui::SameLine();
+    }
     if (ImGui::Button("save (F12)"))
         asked.save_picture = true;
     if (ImGui::Button("copy as command")) {
-        ImGui::SetClipboardText(session.services.command(session.picture_options()).c_str());
+        ImGui::SetClipboardText(session.picture_command().c_str());
         session.say("the command that makes this picture is on the clipboard");
     }
 }

@@ -63,7 +63,8 @@ struct Services {
     /// @throws tarn::Error  saying which option is wrong
     std::function<scene::View(const Options&, scene::Scene&)> make_view;
     /// The command that makes the same picture.
-    std::function<std::string(const Options&)> command;
+    /// @param format  "png" or "exr"
+    std::function<std::string(const Options&, const std::string& format)> command;
     /// The command that records a way through all cameras of the scene.
     std::function<std::string(const Options&)> record_command;
     /// Slow: call it on a thread of its own. May throw.
@@ -72,9 +73,11 @@ struct Services {
     std::function<void(const std::vector<scene::NamedCamera>&)> save_cameras;
     /// Begins to write a picture and what belongs beside it.
     /// @param overview  the picture itself, or a smaller one (scene/strips.hpp)
+    /// @param format    "png" or "exr"
     /// @throws tarn::Error
     std::function<std::unique_ptr<SavedPicture>(const Image& overview, const scene::Scene&,
-                                                const scene::View&, const Options&)>
+                                                const scene::View&, const Options&,
+                                                const std::string& format)>
         begin_picture;
     /// @throws tarn::Error
     std::function<scene::MapLayer(const std::string& path)> read_layer;

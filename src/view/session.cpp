@@ -11,16 +11,6 @@
 
 namespace tarn::view {
 
-namespace {
-
-scene::HeightsFrom heights_from(const std::string& words) {
-    return words == "level"    ? scene::HeightsFrom::level
-           : words == "ground" ? scene::HeightsFrom::ground
-                               : scene::HeightsFrom::datum;
-}
-
-} // namespace
-
 Session::Session(scene::Scene& s, const Services& v, Options options)
     : scene(s), services(v), usual_optics_(s.optics), view(v.make_view(options, s)),
       flight(s, pose_of(view.camera)), options_(std::move(options)) {
@@ -243,7 +233,7 @@ void Session::add_layer(const std::string& path, bool in_space) {
         layers.push_back(services.read_layer(path));
         layer_paths_.push_back(path);
         if (in_space)
-            layers.back().heights = heights_from(option("layers-3d-heights"));
+            layers.back().heights = scene::heights_from(option("layers-3d-heights"));
         try {
             lay_layers();
         } catch (const std::exception&) {
@@ -267,7 +257,7 @@ void Session::count_heights_from(const std::string& words) {
     const std::vector<scene::MapLayer> before = layers;
     for (scene::MapLayer& layer : layers)
         if (layer.heights)
-            layer.heights = heights_from(words);
+            layer.heights = scene::heights_from(words);
     try {
         hang_layers();
         options_["layers-3d-heights"] = words;

@@ -63,6 +63,11 @@ public:
     /// The same for the picture that would be saved: its size and rays a pixel.
     Options picture_options() const;
     int picture_width_px = 1920, picture_height_px = 1080, picture_samples = 16;
+    std::string picture_format = "png"; ///< or "exr"
+    /// The command that makes that picture.
+    std::string picture_command() const {
+        return services.command(picture_options(), picture_format);
+    }
 
     /// When the sun stands where it does without an option.
     SolarTime usual_time() const;

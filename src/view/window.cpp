@@ -49,6 +49,7 @@ public:
         if (!settings.message.empty())
             session_.complain(settings.message);
         session_.max_error = settings.max_error;
+        session_.picture_format = settings.picture_format;
         if (settings.plan) {
             session_.take_plan(*settings.plan);
             session_.plan_at_rest = !gpu::is_software(); // where it takes a second
@@ -203,7 +204,7 @@ void App::keys(double seconds) {
         if (pressed(GLFW_KEY_Y, GLFW_MOD_CONTROL) && session_.flight.redo())
             changed_ = true;
         if (pressed(GLFW_KEY_C, GLFW_MOD_CONTROL)) {
-            ImGui::SetClipboardText(session_.services.command(session_.picture_options()).c_str());
+            ImGui::SetClipboardText(session_.picture_command().c_str());
             session_.say("the command that makes this picture is on the clipboard");
         }
         if (pressed(GLFW_KEY_ESCAPE)) {
@@ -379,10 +380,11 @@ bool App::draw_rows_of(const scene::View& view, double from_share, double to_sha
 void App::save_picture() {
     try {
         const Options options = session_.picture_options();
-        scene::View view = session_.services.make_view(options, session_.scene);
+        const scene::View view = session_.services.make_view(options, session_.scene);
         const int height = view.settings.height_px, rows = scene::strip_rows(view.settings);
         const auto begin = [&](const Image& overview) {
-            return session_.services.begin_picture(overview, session_.scene, view, options);
+            return session_.services.begin_picture(overview, session_.scene, view, options,
+                                                   session_.picture_format);
         };
         std::unique_ptr<SavedPicture> file;
         bool stopped = false;
@@ -397,12 +399,12 @@ void App::save_picture() {
                 part.settings.strip = {first, std::min(rows, height - first)};
             stopped = !draw_rows_of(part, double(first) / height,
                                     std::min(1.0, double(first + rows) / height));
-            if (stopped)
-                break;
-            const Image drawn = renderer_.read_back();
-            if (!file)
-                file = begin(drawn);
-            file->add(drawn);
+            if (!stopped) {
+                const Image drawn = renderer_.read_back();
+                if (!file)
+                    file = begin(drawn);
+                file->add(drawn);
+            }
         }
         session_.say(stopped ? "no picture was saved" : "wrote " + file->finish());
     } catch (const std::exception& error) {

@@ -20,6 +20,7 @@ struct WindowSettings {
     std::optional<Planned> plan; ///< made before the window opened
     double max_error = 0.01;     ///< of that, and of others to come
     bool egl = false;            ///< ask GLFW for an EGL context instead of the platform's own
+    std::string picture_format = "png"; ///< or "exr": what F12 writes
 };
 
 /// Shows the scene until somebody closes the window.

@@ -1,4 +1,5 @@
 // Levels, scenarios, recordings and layers as people and scripts use them.
+#include "core/geo.hpp"
 #include "dem/gdal_door.hpp"
 #include "image/files.hpp"
 #include "support/bowl_scene.hpp"
@@ -40,6 +41,11 @@ std::vector<std::vector<std::string>> csv_rows(const fs::path& path) {
             out.back().push_back(field);
     }
     return out;
+}
+
+GeoPoint lake_place(const std::string& scene) {
+    const auto lake = nlohmann::json::parse(run("tarn info " + scene + " --json").out)["lakes"][0];
+    return {lake["lat_deg"], lake["lon_deg"]};
 }
 
 } // namespace
@@ -260,8 +266,7 @@ TEST(Sweep, SaysWhatCannotBeBeforeAnyWork) {
 TEST(Layers, AreDrawnWhereTheyLie) {
     const TempFolder t;
     const std::string scene = shared().scene;
-    const auto lake = nlohmann::json::parse(run("tarn info " + scene + " --json").out)["lakes"][0];
-    const double lat = lake["lat_deg"], lon = lake["lon_deg"];
+    const auto [lat, lon] = lake_place(scene);
     std::ofstream(t / "track.geojson")
         << "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":{},"
            "\"geometry\":{\"type\":\"LineString\",\"coordinates\":[["
@@ -315,8 +320,7 @@ TEST(Layers, AreDrawnWhereTheyLie) {
 TEST(Layers, HangInSpaceAtTheirOwnHeights) {
     const TempFolder t;
     const std::string scene = shared().scene;
-    const auto lake = nlohmann::json::parse(run("tarn info " + scene + " --json").out)["lakes"][0];
-    const double lat = lake["lat_deg"], lon = lake["lon_deg"];
+    const auto [lat, lon] = lake_place(scene);
     std::ofstream(t / "track.gpx")
         << std::setprecision(12) << "<gpx version=\"1.1\" creator=\"test\"><wpt lat=\"" << lat
         << "\" lon=\"" << lon << "\"><ele>14</ele><name>Buoy 7</name></wpt><trk><trkseg>"

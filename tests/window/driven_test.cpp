@@ -241,6 +241,23 @@ TEST(Driven, EveryPanelOpens) {
 }
 
 // A screen with 192 dots an inch: letters and panels twice as large, the picture as before.
+TEST(Driven, SavesAPictureAsExr) {
+    TARN_NEEDS_DESK();
+    Desk desk;
+    desk.open(sample().scene, {"--samples", "1", "--picture-format", "exr"});
+    pause(1.0);
+    desk.key("F12");
+    for (int i = 0; i < 300 && !fs::exists(desk / "tarn_001.json"); ++i)
+        pause(0.2);
+    const Image picture = image::read_exr(desk / "tarn_001.exr");
+    EXPECT_EQ(picture.width_px, 1920);
+    EXPECT_TRUE(std::isfinite(picture.distance_m[std::size_t(1920) * 800 + 960])); // the lake
+    EXPECT_FALSE(fs::exists(desk / "tarn_001.png"));
+    desk.key("ctrl+q");
+    EXPECT_EQ(desk.program().wait(20.0), 0) << desk.said();
+    EXPECT_EQ(desk.count("complaint"), 0);
+}
+
 TEST(Driven, FinePixelsGetLargePanels) {
     TARN_NEEDS_DESK();
     const auto panel_height = [](int dpi) {

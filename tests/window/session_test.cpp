@@ -55,7 +55,7 @@ struct Desk {
                 s.optics.name = "by Secchi depth";
             return view;
         };
-        services.command = [](const Options& options) {
+        services.command = [](const Options& options, const std::string&) {
             std::string out = "tarn render bowl";
             for (const auto& [name, value] : options)
                 out += " --" + name + " " + value;
@@ -148,7 +148,7 @@ TEST(Session, EverythingIsInTheCommand) {
     session.set("wind", "5");
     wait_for_levels(session);
     session.set_level(8.0, true);
-    const std::string command = desk.services.command(session.all_options());
+    const std::string command = desk.services.command(session.all_options(), "png");
     for (const char* part : {"--wind 5", "--time 2026-06-21T09:30", "--level 8.000", "--camera x="})
         EXPECT_NE(command.find(part), std::string::npos) << command;
     session.set_level(10.0, true); // as imported: nothing to say
