@@ -22,6 +22,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = TARN_TEXTURE_HEIGHTS) uniform sampler2D heights;
 layout(binding = TARN_TEXTURE_SKY) uniform sampler2D sky_table;
 layout(binding = TARN_TEXTURE_WATER) uniform sampler2D water;
+#ifdef TARN_GLOW
+layout(binding = TARN_TEXTURE_GLOW) uniform sampler2D glow;
+#endif
 layout(binding = TARN_TEXTURE_ORTHO) uniform sampler2D ortho;
 layout(binding = TARN_TEXTURE_OVERLAY) uniform sampler2D overlay;
 #ifdef TARN_MAP
@@ -53,11 +56,14 @@ const vec3 layer_colour = vec3(0.85, 0.18, 0.05);
 
 bool on(uint flag) { return (view.counts.z & flag) != 0u; }
 
-vec3 sky(vec3 direction) {
+// What sky and sun send from a direction.
+//
+//   disc_left  share of the sun's disc that is seen in its place
+vec3 sky(vec3 direction, vec3 disc_left) {
     vec3 radiance = sky_radiance(sky_table, direction, view.sun.xyz);
     if (on(TARN_FLAG_SUN_DISC)) {
         float radius = view.sun.w;
-        radiance += view.sun_irradiance.rgb / (3.14159265359 * radius * radius) *
+        radiance += disc_left * view.sun_irradiance.rgb / (3.14159265359 * radius * radius) *
                     disc_share(direction, view.sun.xyz, radius, view.camera.w);
     }
     return radiance;
@@ -263,8 +269,13 @@ vec3 scattered_radiance(Part part, float from_m, float to_m, float water_m, floa
 #endif
         focus *= lit_way(part, from_m, length_m, below);
 #endif
-    return focus * sun_irradiance_below(below) *
-               path_radiance(water, view.water, 1.0 / below.z, depth, sink, water_m + from_m, length_m) +
+    vec3 scattered = path_radiance(water, view.water, 1.0 / below.z, depth, sink, water_m + from_m, length_m);
+#ifdef TARN_GLOW
+    float off_beam = atan(length(cross(part.direction, below)), dot(part.direction, below));
+    scattered += glow_radiance(glow, view.water, view.optics.w, 1.0 / below.z, depth, sink, water_m + from_m,
+                               length_m, off_beam);
+#endif
+    return focus * sun_irradiance_below(below) * scattered +
            view.sky_irradiance.rgb * (view.optics.z * sky_slant) *
                path_radiance(water, view.water, sky_slant, depth, sink, water_m + from_m, length_m);
 }
@@ -279,6 +290,15 @@ vec3 overlay_radiance(Part part, End end, vec3 radiance) {
     return drawn * radiance + blurred * scattered_radiance(part, end.t, max(reach(view, part), end.t), 0.0, 1.0);
 }
 
+// Share of the sun's disc, of what so much water lets through, that was not scattered and is seen in its place.
+vec3 disc_left(float water_m) {
+#ifdef TARN_GLOW
+    if (water_m > 0.0)
+        return image_transmittance(water, view.water, water_m) / max(transmittance(water, view.water, water_m), vec3(1e-9));
+#endif
+    return vec3(1.0);
+}
+
 // Radiance that a part brings to the eye, but for the split's factor and, in the air, the water before it.
 //
 //   before_m  length of the path before the part
@@ -287,6 +307,14 @@ vec3 part_radiance(Part part, End end, float before_m, float water_m, Sunlit sun
     vec3 radiance = vec3(0.0);
     if (part.in_water)
         radiance = scattered_radiance(part, 0.0, end.t, water_m, sunlit.way);
+#ifdef TARN_GLOW
+    // What lies before a thing and what lies behind it are to be as bright together as the water without it.
+    if (part.in_water && (end.flags & end_overlay) != 0u) {
+        float all_m = max(reach(view, part), end.t);
+        radiance = scattered_radiance(part, 0.0, all_m, water_m, sunlit.way) -
+                   scattered_radiance(part, end.t, all_m, water_m, sunlit.way);
+    }
+#endif
 #ifdef TARN_LAMP
     if (part.in_water && before_m == 0.0)
         radiance += lamp_scattered(part.direction, end.t);
@@ -298,7 +326,7 @@ vec3 part_radiance(Part part, End end, float before_m, float water_m, Sunlit sun
             radiance = through_air(part, end.t, radiance);
 #endif
     } else if ((end.flags & (end_surface | end_overlay)) == 0u && !part.in_water)
-        radiance += sky(part.direction);
+        radiance += sky(part.direction, disc_left(water_m));
     return radiance;
 }
 

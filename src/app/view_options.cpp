@@ -361,6 +361,8 @@ void add_view_options(CLI::App& c, ViewWords& w) {
         ->capture_default_str();
     c.add_flag("--no-thrown-back", w.no_thrown_back,
                "leave out what the surface throws back at the bed");
+    c.add_flag("--no-forward-glow", w.no_forward_glow,
+               "seen from below, keep all of the sun's light in its disc");
     std::vector<std::string> methods;
     for (const scene::WalkMethod& method : scene::walk_methods())
         methods.emplace_back(method.name);
@@ -555,6 +557,7 @@ scene::View make_view(const ViewWords& w, scene::Scene& scene) {
     scene.optics = make_water(w, scene);
     view.settings.spectral = w.colour == "spectral";
     view.settings.thrown_back = !w.no_thrown_back;
+    view.settings.forward_glow = !w.no_forward_glow;
 
     if (!w.sun_place.empty() &&
         (!w.sun.empty() || !w.sun_direction.empty() || !w.environment.empty()))

@@ -20,7 +20,7 @@ struct ViewWords {
     double environment_turn_deg = 0.0;
     std::optional<double> secchi, chlorophyll, cdom, turbidity;
     std::string colour = "spectral";
-    bool no_thrown_back = false;
+    bool no_thrown_back = false, no_forward_glow = false;
     std::optional<double> index;
     std::string fresnel = "exact", intersection = "cone-map", caustics = "splat";
     std::string curvature = "auto", layers_on = "all";

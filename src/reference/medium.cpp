@@ -1,6 +1,7 @@
 #include "reference/medium.hpp"
 
 #include "reference/fresnel.hpp"
+#include "scene/forward_glow.hpp"
 #include "scene/water_colour.hpp"
 #include "scene/water_types.hpp"
 
@@ -14,23 +15,30 @@ constexpr double pi = 3.14159265358979323846;
 } // namespace
 
 Medium::Medium(const scene::WaterOptics& optics, bool spectral) : index_(optics.index) {
-    if (spectral && !optics.bands.empty()) {
+    const auto sum_over = [&](double step_nm) {
+        std::vector<Wave> waves;
         glm::dvec3 sum(0.0);
-        for (double nm = 401.25; nm < 700.0; nm += 2.5) { // midpoints
+        for (double nm = 400.0 + 0.5 * step_nm; nm < 700.0; nm += step_nm) { // midpoints
             const scene::WaterBand band = scene::band_at(optics.bands, nm);
             const glm::dvec3 weight = scene::sunlight_colour(nm);
-            waves_.push_back({weight, band.attenuation_per_m(), band.backscattering_per_m,
-                              band.absorption_per_m + band.scattering_per_m, band.pattern_per_m()});
+            waves.push_back({weight, band.attenuation_per_m(), band.backscattering_per_m,
+                             band.absorption_per_m + band.scattering_per_m, band.pattern_per_m(),
+                             band.forward_per_m()});
             sum += weight;
         }
-        for (Wave& wave : waves_)
+        for (Wave& wave : waves)
             wave.weight /= sum;
+        return waves;
+    };
+    if (spectral && !optics.bands.empty()) {
+        waves_ = sum_over(2.5);
+        glow_waves_ = sum_over(10.0);
     } else {
         for (int c = 0; c < 3; ++c) {
             glm::dvec3 weight(0.0);
             weight[c] = 1.0;
             waves_.push_back({weight, optics.attenuation_per_m()[c], optics.backscattering_per_m[c],
-                              optics.attenuation_per_m()[c], optics.attenuation_per_m()[c]});
+                              optics.attenuation_per_m()[c], optics.attenuation_per_m()[c], 0.0});
         }
     }
     double mirrored = 0.0;
@@ -74,6 +82,37 @@ glm::dvec3 Medium::path_radiance(double slant, double depth_m, double sink, doub
         const double mean = std::abs(x) < 1e-9 ? 1.0 : -std::expm1(-x) / x;
         sum += wave.weight * (wave.backscattering_per_m / (2.0 * pi) * distance_m * mean *
                               std::exp(-wave.attenuation_per_m * shortest));
+    }
+    return sum;
+}
+
+glm::dvec3 Medium::glow_radiance(double slant, double depth_m, double sink, double before_m,
+                                 double distance_m, double angle_rad) const {
+    const double rate = 1.0 + slant * sink, start = slant * depth_m + before_m;
+    glm::dvec3 sum(0.0);
+    if (angle_rad >= 0.5 * pi)
+        return sum;
+    double greatest = 0.0;
+    for (const Wave& wave : glow_waves_)
+        greatest = std::max(greatest, wave.attenuation_per_m + wave.forward_per_m);
+    // Pieces, each longer than the one before it, that the path grows little along.
+    const int pieces =
+        std::clamp(int(std::ceil(4.0 * greatest * std::abs(rate) * distance_m)), 1, 16);
+    for (int i = 0; i < pieces; ++i) {
+        const double from = distance_m * std::pow(double(i) / pieces, 2.0),
+                     to = distance_m * std::pow((i + 1.0) / pieces, 2.0);
+        for (const Wave& wave : glow_waves_) {
+            // What a piece brings, and the mean of its paths, by the exponential's moments; counted
+            // from the end where the light has come the shorter way, so that nothing overflows.
+            const double c = wave.attenuation_per_m, gain = rate * (to - from),
+                         x = c * std::abs(gain);
+            const double shortest = std::max(start + rate * from + std::min(gain, 0.0), 0.0);
+            const double mean = x < 1e-9 ? 1.0 : -std::expm1(-x) / x;
+            const double place = x < 1e-4 ? 0.5 : 1.0 / x - 1.0 / std::expm1(x);
+            const double tau = wave.forward_per_m * (shortest + place * std::abs(gain));
+            sum += wave.weight * (wave.forward_per_m * (to - from) * mean *
+                                  std::exp(-c * shortest) * scene::glow_table().at(angle_rad, tau));
+        }
     }
     return sum;
 }

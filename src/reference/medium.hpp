@@ -18,6 +18,8 @@ public:
     glm::dvec3 transmittance(double path_m) const;
     glm::dvec3 path_radiance(double slant, double depth_m, double sink, double before_m,
                              double distance_m) const;
+    glm::dvec3 glow_radiance(double slant, double depth_m, double sink, double before_m,
+                             double distance_m, double angle_rad) const;
     glm::dvec3 thrown_back(double depth_m) const;
     glm::dvec3 image_transmittance(double path_m) const;
     glm::dvec3 pattern_transmittance(double path_m) const;
@@ -27,9 +29,9 @@ public:
 private:
     struct Wave {
         glm::dvec3 weight;
-        double attenuation_per_m, backscattering_per_m, beam_per_m, pattern_per_m;
+        double attenuation_per_m, backscattering_per_m, beam_per_m, pattern_per_m, forward_per_m;
     };
-    std::vector<Wave> waves_;
+    std::vector<Wave> waves_, glow_waves_; ///< fewer: a glow takes more sums
     double index_, sky_entering_;
 };
 

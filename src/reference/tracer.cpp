@@ -358,11 +358,16 @@ private:
         }
     }
 
-    glm::dvec3 sky(glm::dvec3 direction) const {
+    /// @param water_m  that the light comes through: what it scattered is not in the sun's disc
+    glm::dvec3 sky(glm::dvec3 direction, double water_m = 0.0) const {
         glm::dvec3 out = sky_radiance(light_.sky, direction, light_.sun_direction);
         if (light_.sun_disc) {
             const double solid_angle = pi * scene::sun_radius_rad * scene::sun_radius_rad;
-            out += light_.sun_irradiance / solid_angle *
+            glm::dvec3 left(1.0);
+            if (settings_.forward_glow && water_m > 0.0)
+                left = medium_.image_transmittance(water_m) /
+                       glm::max(medium_.transmittance(water_m), glm::dvec3(1e-12));
+            out += left * light_.sun_irradiance / solid_angle *
                    disc_share(direction, light_.sun_direction, scene::sun_radius_rad, pixel_rad_);
         }
         return out;
@@ -620,10 +625,12 @@ private:
 
     /// Radiance arriving at `origin` from `direction`, both in the air.
     /// @param chances  none: no water surface is looked for
+    /// @param water_m  between there and the eye
     glm::dvec3 in_air(glm::dvec3 origin, glm::dvec3 direction, double before_m, double* distance,
-                      std::optional<Chances> chances) const {
+                      std::optional<Chances> chances, double water_m = 0.0) const {
         double end_m = infinity;
-        const glm::dvec3 radiance = in_clear_air(origin, direction, before_m, end_m, chances);
+        const glm::dvec3 radiance =
+            in_clear_air(origin, direction, before_m, end_m, chances, water_m);
         if (distance)
             *distance = end_m;
         return behind_lines(radiance, origin, direction, end_m, before_m, 0.0, nullptr);
@@ -632,11 +639,11 @@ private:
     /// The same without lines in space.
     /// @param end_m  on return: to what was met
     glm::dvec3 in_clear_air(glm::dvec3 origin, glm::dvec3 direction, double before_m, double& end_m,
-                            std::optional<Chances> chances) const {
+                            std::optional<Chances> chances, double water_m) const {
         const auto met = meet_in_air(origin, direction, chances.has_value());
         end_m = met ? met->hit.t : infinity;
         if (!met)
-            return sky(direction);
+            return sky(direction, water_m);
         const Hit& hit = met->hit;
         if (!hit.water)
             return through_air(origin, direction, hit.t,
@@ -780,9 +787,9 @@ private:
             out += at.mirror * in_water(top - above, at.reflected, lake, before_m + length, water_m,
                                         nullptr, further(*chances, 0));
         if (settings_.refraction && at.mirror < 1.0)
-            out +=
-                medium_.transmittance(water_m) * at.through *
-                in_air(top + above, at.refracted, before_m + length, nullptr, further(*chances, 1));
+            out += medium_.transmittance(water_m) * at.through *
+                   in_air(top + above, at.refracted, before_m + length, nullptr,
+                          further(*chances, 1), water_m);
         return out;
     }
 
@@ -792,9 +799,15 @@ private:
                              double length, bool bed_known) const {
         const double slant = 1.0 / sun_below_.z, sink = -direction.z;
         const bool shafts = tiles_ && settings_.shaft_steps > 0;
+        const double off_beam = std::atan2(glm::length(glm::cross(direction, sun_below_)),
+                                           glm::dot(direction, sun_below_));
         const auto between = [&](double from, double to) {
-            return medium_.path_radiance(slant, std::max(depth + sink * from, 0.0), sink,
-                                         before_m + from, to - from);
+            const double deep = std::max(depth + sink * from, 0.0);
+            glm::dvec3 out = medium_.path_radiance(slant, deep, sink, before_m + from, to - from);
+            if (settings_.forward_glow)
+                out +=
+                    medium_.glow_radiance(slant, deep, sink, before_m + from, to - from, off_beam);
+            return out;
         };
         if (!(shafts || settings_.shadows) || !(length > 0.0))
             return between(0.0, length);

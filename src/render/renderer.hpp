@@ -174,6 +174,7 @@ private:
     std::string walk_file() const;
     void prepare_waves(const scene::View& view);
     void upload_water(bool spectral);
+    void prepare_glow(const scene::View& view);
     void bind_images();
     void locate_camera();
     void find_port_heights(double level_m);
@@ -198,6 +199,9 @@ private:
     std::vector<glm::vec3> sky_made_;                  ///< as it is on the GPU
     bool hazy_ = false, whole_sky_ = false, mapped_ = false, curved_ = false, coarse_ = false,
          port_ = false, lamp_ = false, cut_water_ = false;
+    bool glow_asked_ = false; ///< the sun's light is scattered forwards, if the camera is in water
+    gpu::Texture2D glow_;     ///< scene::make_glow_colours() ...
+    std::optional<scene::WaterOptics> glow_made_; ///< ... of that water
     gpu::Texture2D port_heights_;
     std::map<std::string, gpu::ComputeProgram> port_passes_; ///< by the waves' defines
     gpu::Texture2D exposed_, drape_;

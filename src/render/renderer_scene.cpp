@@ -212,6 +212,27 @@ void Renderer::upload_water(bool spectral) {
     water_.bind(TARN_TEXTURE_WATER);
 }
 
+// Waters of three channels say nothing of what they scatter forwards.
+void Renderer::prepare_glow(const scene::View& view) {
+    const scene::WaterOptics& optics = scene_.optics;
+    const auto scatters = [](const scene::WaterBand& band) { return band.forward_per_m() > 0.0; };
+    const glm::dvec3 sun = view.lighting.sun_irradiance;
+    glow_asked_ = view.settings.forward_glow && view.settings.spectral &&
+                  view.lighting.sun_direction.z > 0.0 && sun.x + sun.y + sun.z > 0.0 &&
+                  std::any_of(optics.bands.begin(), optics.bands.end(), scatters);
+    if (!glow_asked_)
+        return;
+    if (glow_made_ != optics) {
+        glow_made_ = optics;
+        const scene::GlowColours colours =
+            scene::make_glow_colours(optics, scene::make_water_table(optics, true));
+        glow_ = gpu::Texture2D(GL_RGBA32F, colours.angles, colours.paths, 1, gpu::Filter::linear,
+                               "glow");
+        glow_.upload(GL_RGBA, GL_FLOAT, colours.rgb.data());
+    }
+    glow_.bind(TARN_TEXTURE_GLOW);
+}
+
 // Which water the sun's light comes into, by where it enters; where neither land nor bed hides
 // any of it, no program asks.
 void Renderer::prepare_land_shadow(const scene::View& view) {

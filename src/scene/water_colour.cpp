@@ -1,5 +1,6 @@
 #include "scene/water_colour.hpp"
 
+#include "scene/forward_glow.hpp"
 #include "scene/water_types.hpp"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ struct Band {
     glm::dvec3 weight;
     double attenuation_per_m, backscattering_per_m;
     double beam_per_m; ///< a + b
-    double pattern_per_m;
+    double pattern_per_m, forward_per_m;
 };
 
 /// One lobe of the fit: a Gaussian of two widths.
@@ -32,7 +33,7 @@ std::vector<Band> bands_of(const WaterOptics& optics, bool spectral) {
         for (int c = 0; c < 3; ++c) {
             glm::dvec3 weight(0.0);
             weight[c] = 1.0;
-            out.push_back({weight, k[c], optics.backscattering_per_m[c], k[c], k[c]});
+            out.push_back({weight, k[c], optics.backscattering_per_m[c], k[c], k[c], 0.0});
         }
         return out;
     }
@@ -41,7 +42,8 @@ std::vector<Band> bands_of(const WaterOptics& optics, bool spectral) {
         const WaterBand band = band_at(optics.bands, nm);
         const glm::dvec3 weight = sunlight_colour(nm) * (nm == 400 || nm == 700 ? 0.5 : 1.0);
         out.push_back({weight, band.attenuation_per_m(), band.backscattering_per_m,
-                       band.absorption_per_m + band.scattering_per_m, band.pattern_per_m()});
+                       band.absorption_per_m + band.scattering_per_m, band.pattern_per_m(),
+                       band.forward_per_m()});
         sum += weight;
     }
     for (Band& band : out)
@@ -179,6 +181,34 @@ WaterTable make_water_table(const WaterOptics& optics, bool spectral) {
         table.rows[5].emplace_back(pattern);
     }
     return table;
+}
+
+GlowColours make_glow_colours(const WaterOptics& optics, const WaterTable& table) {
+    const GlowTable& glow = glow_table();
+    GlowColours out;
+    out.angles = glow.angles;
+    const std::vector<Band> bands = bands_of(optics, true);
+    std::vector<glm::dvec3> sum(std::size_t(glow.angles));
+    for (int row = 0; row < out.paths; ++row) {
+        const double share = row / double(out.paths - 1);
+        const double x =
+            table.shortest_m * std::expm1(std::log1p(table.longest_m / table.shortest_m) * share);
+        std::fill(sum.begin(), sum.end(), glm::dvec3(0.0));
+        for (const Band& band : bands) {
+            const glm::dvec3 left =
+                band.weight * (band.forward_per_m * std::exp(-band.attenuation_per_m * x));
+            const double place = glow.row_of(band.forward_per_m * x);
+            const int low = std::min(int(place), glow.depths - 2);
+            const double u = place - low;
+            const float* entry = glow.h.data() + std::size_t(low * glow.angles);
+            for (int a = 0; a < glow.angles; ++a, ++entry)
+                sum[std::size_t(a)] +=
+                    left * std::lerp(double(entry[0]), double(entry[glow.angles]), u);
+        }
+        for (const glm::dvec3& value : sum)
+            out.rgb.emplace_back(value, 0.0);
+    }
+    return out;
 }
 
 } // namespace tarn::scene

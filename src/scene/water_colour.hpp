@@ -47,4 +47,16 @@ struct WaterTable {
 /// @param spectral  false: three narrow bands, an exponential each
 WaterTable make_water_table(const WaterOptics& optics, bool spectral);
 
+/// The glow that water makes of the sun's light, by colour: what a metre scatters forwards,
+///   sum of w b_f exp(-(a + b_b) x) H(angle, b_f x)  [1/(m sr)]   (scene/forward_glow.hpp),
+/// over the angle off the beam and the path x, b_f being WaterBand::forward_per_m().
+struct GlowColours {
+    static constexpr int paths = 256;
+    int angles = 0;
+    std::vector<glm::vec4> rgb; ///< [path][angle], alpha 0; paths spaced as the table's are
+};
+
+/// @pre  optics have bands
+GlowColours make_glow_colours(const WaterOptics& optics, const WaterTable& table);
+
 } // namespace tarn::scene

@@ -28,6 +28,12 @@ struct WaterBand {
     double pattern_per_m() const {
         return attenuation_per_m() + scattered_wide * (scattering_per_m - backscattering_per_m);
     }
+    /// Of light that goes on in about its direction: what is not scattered evenly to all sides.
+    double forward_per_m() const {
+        return scattering_per_m > 2.0 * backscattering_per_m
+                   ? scattering_per_m - 2.0 * backscattering_per_m
+                   : 0.0;
+    }
     friend bool operator==(const WaterBand&, const WaterBand&) = default;
 };
 

@@ -4,6 +4,7 @@
 #include "support/gpu_function.hpp"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <optional>
 #include <random>
@@ -22,19 +23,28 @@ public:
         texture_ = gpu::Texture2D(GL_RGBA32F, table.texels, int(table.rows.size()), 1,
                                   gpu::Filter::nearest, "water");
         texture_.upload(GL_RGBA, GL_FLOAT, table.packed().data());
+        if (!optics.bands.empty()) {
+            const scene::GlowColours colours = scene::make_glow_colours(optics, table);
+            glow_ = gpu::Texture2D(GL_RGBA32F, colours.angles, colours.paths, 1,
+                                   gpu::Filter::linear, "glow");
+            glow_.upload(GL_RGBA, GL_FLOAT, colours.rgb.data());
+        }
         function_.emplace(
             "lib/medium.glsl", body,
-            text("layout(binding = 0) uniform sampler2D water;\nconst vec4 scale = vec4(", scale.x,
-                 ", ", scale.y, ", ", scale.z, ", ", scale.w, ");\n"));
+            text("layout(binding = 0) uniform sampler2D water;\n"
+                 "layout(binding = 1) uniform sampler2D glow;\nconst vec4 scale = vec4(",
+                 scale.x, ", ", scale.y, ", ", scale.z, ", ", scale.w, ");\n"));
     }
     std::vector<glm::vec4> operator()(const std::vector<glm::vec4>& x,
                                       const std::vector<glm::vec4>& y = {}) const {
         texture_.bind(0);
+        if (glow_.id() != 0)
+            glow_.bind(1);
         return (*function_)(x, y);
     }
 
 private:
-    gpu::Texture2D texture_;
+    gpu::Texture2D texture_, glow_;
     std::optional<test_support::GpuFunction> function_;
 };
 
@@ -117,5 +127,59 @@ TEST(MediumGpu, PathRadianceAgrees) {
             worst = std::max(worst, error / limit);
         }
         std::printf("%-24s worst %.2f of the limit\n", optics.name.c_str(), worst);
+    }
+}
+
+// The oracle sums over wavelengths, each with its own mean path. A camera up to four optical depths
+// down looks up, level and down; the sun stands in the zenith to at the horizon.
+TEST(MediumGpu, GlowAgrees) {
+    for (const scene::WaterOptics& optics : waters()) {
+        if (optics.bands.empty())
+            continue;
+        const reference::Medium medium(optics, true);
+        const scene::WaterTable table = scene::make_water_table(optics, true);
+        const glm::dvec3 luminance(0.2126, 0.7152, 0.0722);
+        int third = 1;
+        while (glm::dot(luminance, glm::dvec3(table.rows[0][std::size_t(third)])) > 0.3679)
+            ++third;
+        const double fall = 1.0 / table.path_m(third);
+        std::mt19937 random(3);
+        std::uniform_real_distribution<double> unit(0.0, 1.0);
+        std::vector<glm::vec4> x, y;
+        for (int i = 0; i < 4000; ++i) {
+            const double sun = 0.84 * unit(random), off = std::pow(unit(random), 2.0) * 1.2,
+                         turn = 6.2832 * unit(random);
+            const glm::dvec3 to_sun(std::sin(sun), 0.0, std::cos(sun));
+            const glm::dvec3 view =
+                std::cos(off) * to_sun +
+                std::sin(off) * (std::cos(turn) * glm::dvec3(to_sun.z, 0, -to_sun.x) +
+                                 std::sin(turn) * glm::dvec3(0, 1, 0));
+            const double depth = 4.0 * unit(random) / fall, farthest = 7.0 / fall;
+            const double distance = view.z > 0.0 ? std::min(depth / view.z, farthest) : farthest;
+            x.emplace_back(1.0 / to_sun.z, depth, -view.z, 0.0);
+            y.emplace_back(distance, off, fall, 0.0);
+        }
+        const auto got = MediumFunction(
+            optics,
+            "result.rgb = glow_radiance(glow, scale, y.z, x.x, x.y, x.z, x.w, y.x, y.y);")(x, y);
+        const auto greatest = [](glm::dvec3 v) {
+            return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+        };
+        double worst_near = 0.0, worst_far = 0.0;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const glm::dvec3 expected =
+                medium.glow_radiance(x[i].x, x[i].y, x[i].z, x[i].w, y[i].x, y[i].y);
+            const double error = greatest(glm::dvec3(got[i]) - expected);
+            const glm::dvec3 even = medium.path_radiance(x[i].x, x[i].y, x[i].z, x[i].w, y[i].x);
+            if (y[i].y < 0.17f) // 10 degrees
+                worst_near = std::max(worst_near, error / std::max(greatest(expected), 1e-12));
+            else
+                worst_far = std::max(worst_far, error / greatest(expected + even));
+        }
+        std::printf(
+            "%-24s worst %.3f, of all scattered light more than 10 degrees off the sun %.3f\n",
+            optics.name.c_str(), worst_near, worst_far);
+        EXPECT_LE(worst_near, 0.015) << optics.name;
+        EXPECT_LE(worst_far, 0.06) << optics.name;
     }
 }
