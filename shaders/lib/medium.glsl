@@ -84,6 +84,8 @@ vec2 mean_way(float gain) {
 vec3 glow_radiance(sampler2D glow, vec4 scale, float fall, float slant, float depth_m, float sink, float before_m,
                    float distance_m, float angle_rad) {
     const float least_rad = 0.004, angles = 1.0 / log(1.0 + 3.14159265359 / least_rad);
+    if (angle_rad >= 1.57079632679)
+        return vec3(0.0);
     float rate = 1.0 + slant * sink, start = slant * depth_m + before_m;
     vec2 size = vec2(textureSize(glow, 0));
     vec2 at = vec2(clamp(log(1.0 + angle_rad / least_rad) * angles, 0.0, 1.0) * (size.x - 1.0) + 0.5, 0.0) / size.x;

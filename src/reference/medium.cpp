@@ -92,6 +92,8 @@ glm::dvec3 Medium::glow_radiance(double slant, double depth_m, double sink, doub
     glm::dvec3 sum(0.0);
     if (angle_rad >= 0.5 * pi)
         return sum;
+    const scene::GlowTable& glow = scene::glow_table();
+    const double column = glow.column_of(angle_rad);
     double greatest = 0.0;
     for (const Wave& wave : glow_waves_)
         greatest = std::max(greatest, wave.attenuation_per_m + wave.forward_per_m);
@@ -110,8 +112,9 @@ glm::dvec3 Medium::glow_radiance(double slant, double depth_m, double sink, doub
             const double mean = x < 1e-9 ? 1.0 : -std::expm1(-x) / x;
             const double place = x < 1e-4 ? 0.5 : 1.0 / x - 1.0 / std::expm1(x);
             const double tau = wave.forward_per_m * (shortest + place * std::abs(gain));
-            sum += wave.weight * (wave.forward_per_m * (to - from) * mean *
-                                  std::exp(-c * shortest) * scene::glow_table().at(angle_rad, tau));
+            sum +=
+                wave.weight * (wave.forward_per_m * (to - from) * mean * std::exp(-c * shortest) *
+                               glow.at_place(column, glow.row_of(tau)));
         }
     }
     return sum;

@@ -75,15 +75,16 @@ double GlowTable::row_of(double tau_here) {
            (depths - 1);
 }
 
-double GlowTable::at(double theta, double tau_here) const {
-    const double x =
-        std::clamp(std::log1p(theta / least_rad) / std::log1p(pi / least_rad), 0.0, 1.0) *
-        (angles - 1);
-    const double y = row_of(tau_here);
+double GlowTable::column_of(double theta) {
+    return std::clamp(std::log1p(theta / least_rad) / std::log1p(pi / least_rad), 0.0, 1.0) *
+           (angles - 1);
+}
+
+double GlowTable::at_place(double x, double y) const {
     const int column = std::min(int(x), angles - 2), row = std::min(int(y), depths - 2);
-    const auto entry = [&](int c, int r) { return double(h[std::size_t(r * angles + c)]); };
-    return std::lerp(std::lerp(entry(column, row), entry(column + 1, row), x - column),
-                     std::lerp(entry(column, row + 1), entry(column + 1, row + 1), x - column),
+    const float* entry = h.data() + std::size_t(row * angles + column);
+    return std::lerp(std::lerp(double(entry[0]), double(entry[1]), x - column),
+                     std::lerp(double(entry[angles]), double(entry[angles + 1]), x - column),
                      y - row);
 }
 

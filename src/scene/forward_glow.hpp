@@ -31,11 +31,16 @@ struct GlowTable {
     /// least_tau.
     static double angle_rad(int column);
     static double tau(int row);
-    /// Where between the rows an optical depth lies, in [0, depths - 1].
+    /// Where between columns an angle lies, in [0, angles - 1], and between rows an optical depth,
+    /// in [0, depths - 1].
+    static double column_of(double theta_rad);
     static double row_of(double tau);
     /// H, bilinear between entries.
+    double at_place(double column, double row) const;
     /// @param theta_rad  [0, pi]   @param tau  >= 0
-    double at(double theta_rad, double tau) const;
+    double at(double theta_rad, double tau) const {
+        return at_place(column_of(theta_rad), row_of(tau));
+    }
 };
 
 /// Made once.

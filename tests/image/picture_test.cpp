@@ -343,6 +343,46 @@ TEST(Picture, ABlackThingInTheWaterIsSeenAsFarAsItsAttenuationSays) {
     }
 }
 
+// Looking up into the sun from ever deeper: what was not scattered is in the disc, the rest around
+// it.
+TEST(Picture, TheSunsDiscFadesIntoItsGlow) {
+    test_support::context();
+    scene::Scene scene = scene::bowl(65);
+    scene.optics = scene::water_type("mesotrophic lake");
+    render::Renderer renderer(scene);
+    const reference::Medium medium(scene.optics, true);
+    scene::View view;
+    view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.0, 0.5, 0.9)));
+    view.lighting.sky_irradiance = glm::dvec3(0.0);
+    view.settings = {.width_px = 33, .height_px = 33, .samples = 1, .least_transmittance = 1e-6};
+    const glm::dvec3 under = reference::sun_below(view.lighting.sun_direction, scene.optics.index);
+    const double pitch_deg = std::asin(under.z) * 180.0 / M_PI;
+    const auto luminance = [](glm::dvec3 c) { return glm::dot(c, {0.2126, 0.7152, 0.0722}); };
+    for (const double depth_m : {0.1, 0.5, 2.0, 4.0}) {
+        view.camera = scene::look({0, 0, 10.0 - depth_m}, 0, pitch_deg, 3.0);
+        view.settings.forward_glow = true;
+        const Image got = renderer.draw(view), expected = reference::trace(scene, view, {});
+        view.settings.forward_glow = false;
+        const Image without = renderer.draw(view);
+        const std::size_t middle = 16 * 33 + 16, beside = 16 * 33 + 30;
+        const double way_m = depth_m / under.z,
+                     unscattered = luminance(medium.image_transmittance(way_m)) /
+                                   luminance(medium.transmittance(way_m));
+        EXPECT_NEAR(luminance(got.radiance[middle]) / luminance(expected.radiance[middle]), 1.0,
+                    0.01);
+        EXPECT_NEAR(luminance(got.radiance[beside]) / luminance(expected.radiance[beside]), 1.0,
+                    0.015);
+        // The glow before the disc is as bright as right beside it, and a little brighter.
+        const double disc = luminance(got.radiance[middle] - got.radiance[beside]) /
+                            luminance(without.radiance[middle] - without.radiance[beside]);
+        std::printf("%.1f m deep: %.4f of the disc, unscattered %.4f\n", depth_m, disc,
+                    unscattered);
+        EXPECT_GT(disc, unscattered * 0.99);
+        EXPECT_LT(disc, unscattered * 1.02 + 0.03);
+        EXPECT_GT(luminance(got.radiance[beside]), 2.0 * luminance(without.radiance[beside]));
+    }
+}
+
 TEST(Picture, WatersByTheirWavelengths) {
     scene::Scene scene = scene::mountain_lake(257);
     for (const char* name : {"jerlov I", "clear lake", "humic lake", "glacial lake"}) {
