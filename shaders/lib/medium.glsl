@@ -38,6 +38,36 @@ float drawn_place(float fall, float length_m, float share) {
     return abs(steep) < 1e-3 ? share * length_m : -log(1.0 - share * (1.0 - exp(-steep))) / steep * length_m;
 }
 
+// WayLight — how the sun's light that a straight path scatters to the eye falls along it, by luminance.
+struct WayLight {
+    float start; // path of the light that comes from its beginning, eye's way included [m]
+    float rate;  // metres that the light's path grows by, a metre of the way
+    float fall;  // of what comes from farther on [1/m of the way]; < 0 for a steep view upwards
+    float blur;  // of patterns in it, beside the light itself [1/m of the light's path]
+};
+
+// way_light — by its fall to about a third.
+//
+//   scale, slant, depth_m, sink, before_m   as in path_radiance()
+//   length_m  > 0
+WayLight way_light(sampler2D table, vec4 scale, float slant, float depth_m, float sink, float before_m, float length_m) {
+    const vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
+    WayLight way;
+    way.rate = 1.0 + slant * sink;
+    way.start = slant * depth_m + before_m;
+    float here = log(max(dot(luminance, water_row(table, scale, 2, way.start)), 1e-12));
+    float typical = min(length_m, 1.0 / max(scale.z, 1e-3));
+    for (int i = 0; i < 3; ++i) {
+        float there = max(way.start + way.rate * typical, 0.0);
+        way.fall = (here - log(max(dot(luminance, water_row(table, scale, 2, there)), 1e-12))) / typical;
+        typical = min(length_m, 1.0 / max(abs(way.fall), 1e-3));
+    }
+    float whole = max(way.start + 0.5 * way.rate * typical, 1e-3);
+    way.blur = log(max(dot(luminance, transmittance(table, scale, whole)), 1e-12) /
+                   max(dot(luminance, pattern_transmittance(table, scale, whole)), 1e-12)) / whole;
+    return way;
+}
+
 // path_radiance — light scattered into a straight path by the water itself, per unit of the light's irradiance just
 //                 below the surface on a plane facing it.
 //

@@ -19,6 +19,10 @@ layout(binding = TARN_TEXTURE_SUNLIGHT) uniform sampler2DArray sunlight_tiles;
 #ifdef TARN_LAND_SHADOW
 layout(binding = TARN_TEXTURE_LAND_SHADOW) uniform sampler2D land_shadow;
 #endif
+#ifdef TARN_PRISMS
+#include "shared/prisms.h"
+layout(binding = TARN_TEXTURE_PRISMS) uniform sampler2D prisms;
+#endif
 layout(binding = TARN_TEXTURE_AMPLITUDE) uniform sampler2D amplitudes;
 layout(binding = TARN_BLOCK_VIEW, std140) uniform View { ViewBlock view; };
 layout(binding = TARN_BLOCK_SUNLIGHT, std140) uniform Sunlight { SunlightBlock sunlight; };
@@ -64,34 +68,33 @@ float shared_focus(float length_m) {
 //
 //   slant   path of sunlight per metre of depth
 float shaft_focus(Part part, float depth_m, float sink, float slant, float before_m, float length_m, float path_m) {
-    const vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
     length_m = max(length_m, 1e-4); // a mirrored part may end where it begins
-    // All light has come a path that grows evenly: how fast what it brings falls, by its fall to about a third.
-    float rate = 1.0 + slant * sink, start = slant * depth_m + before_m;
-    float here = log(max(dot(luminance, water_row(water, view.water, 2, start)), 1e-12));
-    float typical = min(length_m, 1.0 / max(view.water.z, 1e-3)), fall; // 1/m of the part; < 0 for a steep view upwards
-    for (int i = 0; i < 3; ++i) {
-        float there = log(max(dot(luminance, water_row(water, view.water, 2, max(start + rate * typical, 0.0))), 1e-12));
-        fall = (here - there) / typical;
-        typical = min(length_m, 1.0 / max(abs(fall), 1e-3));
-    }
-    float whole = max(start + 0.5 * rate * typical, 1e-3);
-    float beam = log(max(dot(luminance, transmittance(water, view.water, whole)), 1e-12) /
-                     max(dot(luminance, pattern_transmittance(water, view.water, whole)), 1e-12)) / whole; // 1/m of path
+    WayLight way = way_light(water, view.water, slant, depth_m, sink, before_m, length_m);
     // Sixteen pixels side by side look at places of their own, and share what they find.
     float lot = order_of(ivec2(gl_LocalInvocationID.xy)) + fract(0.5 + 0.61803399 * view.offset.z) / 16.0;
     float sum = 0.0;
     for (int i = 0; i < TARN_SHAFTS; ++i) {
-        float t = drawn_place(fall, length_m, (float(i) + lot) / float(TARN_SHAFTS));
+        float t = drawn_place(way.fall, length_m, (float(i) + lot) / float(TARN_SHAFTS));
         float depth = max(depth_m + sink * t, 0.0);
         float focus = focus_at(place_of(part, t), depth, view.camera.w * (path_m + t));
-        focus = 1.0 + (focus - 1.0) * exp(-beam * max(start + rate * t, 0.0));
+        focus = 1.0 + (focus - 1.0) * exp(-way.blur * max(way.start + way.rate * t, 0.0));
 #ifdef TARN_LAND_SHADOW
         focus *= lit_share(land_shadow, view, part, t, sun_below(view.sun.xyz, view.optics.x));
 #endif
         sum += focus;
     }
     return sum / float(TARN_SHAFTS);
+}
+#endif
+
+#ifdef TARN_PRISMS
+// What the prisms of light add to the mean of 1: four samples of the coarse picture about the pixel.
+float prism_light(ivec2 local) {
+    vec2 texel = (vec2(local) + 0.5) / float(TARN_PRISM_PIXELS), size = vec2(textureSize(prisms, 0));
+    float sum = 0.0;
+    for (int k = 0; k < 4; ++k)
+        sum += textureLod(prisms, (texel + vec2(k & 1, k >> 1) - 0.5) / size, 0.0).r;
+    return 0.25 * sum;
 }
 #endif
 
@@ -136,6 +139,10 @@ void main() {
         if ((end.flags & end_ground) != 0u)
             both.x = focus_at(place_of(part, end.t), max(depth + sink * end.t, 0.0), view.camera.w * (before_m + end.t));
     }
+#ifdef TARN_PRISMS
+    if (mine && slot == 0)
+        both.y = max(1.0 + prism_light(local), 0.0);
+#endif
 #if TARN_SHAFTS > 0
     vec2 own = vec2(1.0, -1e9);
     if (mine)

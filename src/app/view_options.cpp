@@ -391,6 +391,13 @@ void add_view_options(CLI::App& c, ViewWords& w) {
          "--shaft-steps", w.settings.shaft_steps,
          "places along a view in the water where each pixel looks for shafts of light; 0: none")
         ->capture_default_str();
+    c.add_option("--shafts", w.shafts,
+                 "shafts of light seen from below: looked for along each view, or prisms of light "
+                 "under a grid about the sun's image")
+        ->check(CLI::IsMember({"march", "prisms"}))
+        ->capture_default_str();
+    c.add_option("--shaft-prisms", w.settings.shaft_prisms, "on a side of that grid, 4 to 512")
+        ->capture_default_str();
     c.add_option("--least-transmittance", w.settings.least_transmittance,
                  "underwater paths end where less is left")
         ->capture_default_str();
@@ -537,6 +544,7 @@ scene::View make_view(const ViewWords& w, scene::Scene& scene) {
     for (const scene::WalkMethod& method : scene::walk_methods())
         if (w.intersection == method.name)
             view.settings.walk = method.walk;
+    view.settings.shafts = w.shafts == "prisms" ? scene::Shafts::prisms : scene::Shafts::march;
     for (const scene::CausticsMethod& method : scene::caustics_methods())
         if (w.caustics == method.name)
             view.settings.caustics = method.caustics;

@@ -22,7 +22,7 @@ struct ViewWords {
     std::string colour = "spectral";
     bool no_thrown_back = false, no_forward_glow = false;
     std::optional<double> index;
-    std::string fresnel = "exact", intersection = "cone-map", caustics = "splat";
+    std::string fresnel = "exact", intersection = "cone-map", caustics = "splat", shafts = "march";
     std::string curvature = "auto", layers_on = "all";
     bool coarse_far_land = false;
     bool no_shadows = false, no_reflection = false, no_mirrored_land = false, no_refraction = false,

@@ -86,6 +86,28 @@ BufferTexture::BufferTexture(GLenum format, const Buffer& buffer) {
     glTextureBuffer(id, format, buffer.id());
 }
 
+Target::Target(const Texture2D& texture) {
+    GLuint id = 0;
+    glCreateFramebuffers(1, &id);
+    name_ = Name<delete_framebuffer>(id);
+    glNamedFramebufferTexture(id, GL_COLOR_ATTACHMENT0, texture.id(), 0);
+    if (glCheckNamedFramebufferStatus(id, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        throw Error("the GL driver cannot draw into a texture that it made",
+                    "please report it with tarn doctor's output");
+}
+
+NoVertices::NoVertices() {
+    GLuint id = 0;
+    glCreateVertexArrays(1, &id);
+    name_ = Name<delete_vertex_array>(id);
+}
+
+void NoVertices::draw(int vertices, int instances) const {
+    glBindVertexArray(name_.get());
+    glDrawArraysInstanced(GL_TRIANGLES, 0, vertices, instances);
+    glBindVertexArray(0);
+}
+
 Timer::Timer() {
     GLuint id = 0;
     glCreateQueries(GL_TIME_ELAPSED, 1, &id);

@@ -34,6 +34,8 @@ private:
 inline void delete_texture(GLuint id) { glDeleteTextures(1, &id); }
 inline void delete_buffer(GLuint id) { glDeleteBuffers(1, &id); }
 inline void delete_sampler(GLuint id) { glDeleteSamplers(1, &id); }
+inline void delete_vertex_array(GLuint id) { glDeleteVertexArrays(1, &id); }
+inline void delete_framebuffer(GLuint id) { glDeleteFramebuffers(1, &id); }
 inline void delete_query(GLuint id) { glDeleteQueries(1, &id); }
 inline void delete_program(GLuint id) { glDeleteProgram(id); }
 
@@ -132,6 +134,29 @@ public:
 
 private:
     Name<delete_texture> name_;
+};
+
+/// A texture that triangles are drawn into.
+class Target {
+public:
+    Target() = default;
+    /// @param texture  must outlive this
+    /// @throws tarn::Error  if the driver cannot draw into its format
+    explicit Target(const Texture2D& texture);
+    void bind() const { glBindFramebuffer(GL_FRAMEBUFFER, name_.get()); }
+
+private:
+    Name<delete_framebuffer> name_;
+};
+
+/// Triangles whose vertices the vertex shader works out from their numbers.
+class NoVertices {
+public:
+    NoVertices();
+    void draw(int vertices, int instances) const;
+
+private:
+    Name<delete_vertex_array> name_;
 };
 
 /// GPU time between start() and stop().

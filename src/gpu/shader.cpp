@@ -104,20 +104,60 @@ std::string name_files(const std::string& driver_log, const ShaderSource& source
     return out;
 }
 
-ComputeProgram::ComputeProgram(const ShaderSource& source) {
-    const char* code = source.code.c_str();
-    name_ = Name<delete_program>(glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &code));
-    GLint linked = GL_FALSE;
-    glGetProgramiv(id(), GL_LINK_STATUS, &linked);
-    if (linked)
-        return;
-    std::string log(8192, '\0');
-    GLsizei length = 0;
-    glGetProgramInfoLog(id(), static_cast<GLsizei>(log.size()), &length, log.data());
-    log.resize(static_cast<std::size_t>(length));
+namespace {
+
+[[noreturn]] void refuse(const ShaderSource& source, const std::string& log) {
     throw Error(
         "shader " + source.files.front() + " does not compile: " + name_files(log, source),
         "this is a fault of tarn or of the GL driver: please report it with tarn doctor's output");
+}
+
+std::string program_log(GLuint program) {
+    std::string log(8192, '\0');
+    GLsizei length = 0;
+    glGetProgramInfoLog(program, static_cast<GLsizei>(log.size()), &length, log.data());
+    log.resize(static_cast<std::size_t>(length));
+    return log;
+}
+
+bool is_linked(GLuint program) {
+    GLint linked = GL_FALSE;
+    glGetProgramiv(program, GL_LINK_STATUS, &linked);
+    return linked != GL_FALSE;
+}
+
+} // namespace
+
+ComputeProgram::ComputeProgram(const ShaderSource& source) {
+    const char* code = source.code.c_str();
+    name_ = Name<delete_program>(glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &code));
+    if (!is_linked(id()))
+        refuse(source, program_log(id()));
+}
+
+DrawProgram::DrawProgram(const ShaderSource& vertex, const ShaderSource& fragment)
+    : name_(glCreateProgram()) {
+    const auto attach = [&](GLenum kind, const ShaderSource& source) {
+        const GLuint shader = glCreateShader(kind);
+        const char* code = source.code.c_str();
+        glShaderSource(shader, 1, &code, nullptr);
+        glCompileShader(shader);
+        GLint compiled = GL_FALSE;
+        glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+        std::string log(8192, '\0');
+        GLsizei length = 0;
+        glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
+        log.resize(static_cast<std::size_t>(length));
+        glAttachShader(id(), shader);
+        glDeleteShader(shader); // when the program goes
+        if (!compiled)
+            refuse(source, log);
+    };
+    attach(GL_VERTEX_SHADER, vertex);
+    attach(GL_FRAGMENT_SHADER, fragment);
+    glLinkProgram(id());
+    if (!is_linked(id()))
+        refuse(vertex, program_log(id()));
 }
 
 } // namespace tarn::gpu

@@ -48,4 +48,17 @@ private:
     Name<delete_program> name_;
 };
 
+/// A vertex and a fragment shader.
+class DrawProgram {
+public:
+    DrawProgram() = default;
+    /// @throws tarn::Error  with the driver's log, file names filled in
+    DrawProgram(const ShaderSource& vertex, const ShaderSource& fragment);
+    void use() const { glUseProgram(name_.get()); }
+    GLuint id() const { return name_.get(); }
+
+private:
+    Name<delete_program> name_;
+};
+
 } // namespace tarn::gpu

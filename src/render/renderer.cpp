@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <vector>
 
 namespace tarn::render {
@@ -41,8 +42,10 @@ void Renderer::use_shade() {
 }
 
 std::string Renderer::sunlight_defines() const {
-    return caustics_ ? text("#define TARN_CAUSTICS 1\n#define TARN_SHAFTS ", shaft_steps_, "\n")
-                     : std::string();
+    if (!caustics_)
+        return {};
+    return text("#define TARN_CAUSTICS 1\n#define TARN_SHAFTS ", prisms_asked_ ? 0 : shaft_steps_,
+                prisms() ? "\n#define TARN_PRISMS 1\n" : "\n");
 }
 
 std::string Renderer::shade_defines() const {
@@ -160,6 +163,8 @@ void Renderer::prepare_sunlight(const scene::View& view, bool moved) {
     caustics_ = settings.caustics != scene::Caustics::off && view.lighting.sun_direction.z > 0.0 &&
                 !waves_->sea().cascades.empty();
     shaft_steps_ = caustics_ ? settings.shaft_steps : 0;
+    prisms_asked_ = shaft_steps_ > 0 && settings.shafts == scene::Shafts::prisms;
+    prism_cells_ = settings.shaft_prisms;
     if (!caustics_)
         return;
     SunlightSettings asked;
@@ -503,6 +508,10 @@ void Renderer::draw_medium() {
         glMemoryBarrier(images);
     }
     if (caustics_) {
+        if (prisms()) {
+            begins("prisms");
+            draw_prisms();
+        }
         begins("sunlit");
         wavy_ones->sunlit.use();
         glDispatchCompute(across, down, under_water() ? 2 : 1);
@@ -514,6 +523,24 @@ void Renderer::draw_medium() {
     (wavy_ones ? wavy_ones->shade : *calm_shade_).use();
     glDispatchCompute(across, down, 1);
     begins("end");
+}
+
+// Shafts for a camera in the water.
+void Renderer::draw_prisms() {
+    const Heightfield& ground = scene_.ground;
+    const glm::dvec2 base_m(ground.x_m(double(block_.base.x)), ground.y_m(double(block_.base.y)));
+    const double depth_m = std::max(double(block_.options.y) + ground.offset_m - camera_m_.z, 0.0);
+    const glm::dvec3 sun(block_.sun);
+    const glm::dvec3 down =
+        glm::refract(-sun, glm::dvec3(0.0, 0.0, 1.0), 1.0 / double(block_.optics.x));
+    PrismGrid grid = prism_grid({camera_m_.x, camera_m_.y}, base_m, glm::dvec2(down) / -down.z,
+                                depth_m, prism_cells_);
+    grid.top_m = -1.0 - lift_m_;
+    grid.bottom_m = 2.0 * depth_m + 1.0; // below the camera views lead away from the sun
+    if (!prisms_)
+        prisms_.emplace();
+    prisms_->draw(grid, block_.tile.z, block_.tile.w, path_defines() + waves_->defines());
+    beams_.bind_image(TARN_IMAGE_BEAMS, GL_WRITE_ONLY); // shares a unit with the prisms
 }
 
 void Renderer::find_beams() {

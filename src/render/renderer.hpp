@@ -6,6 +6,7 @@
 #include "gpu/objects.hpp"
 #include "gpu/shader.hpp"
 #include "render/field_bounds.hpp"
+#include "render/light_prisms.hpp"
 #include "render/sunlight.hpp"
 #include "render/waves.hpp"
 #include "scene/settings.hpp"
@@ -187,6 +188,8 @@ private:
     void find_beams();
     void set_sample(int sample, int samples);
     void draw_tile();
+    bool prisms() const { return prisms_asked_ && caustics_ && under_water() && !port_; }
+    void draw_prisms();
 
     const scene::Scene& scene_;
     shared::ViewBlock block_{};
@@ -223,6 +226,9 @@ private:
     int shaft_steps_ = 0;   ///< places along a view that shafts of light are looked up at; 0: none
     gpu::Texture2D water_;  ///< the water's table (scene/water_colour.hpp) ...
     std::optional<std::pair<bool, scene::WaterOptics>> water_made_; ///< ... as it was made last
+    bool prisms_asked_ = false; ///< of light, in place of places along each view
+    int prism_cells_ = 128;
+    std::optional<LightPrisms> prisms_;
     gpu::Texture2D sunlit_;   ///< how waves focus the light of each part, with caustics only
     gpu::Texture2D surfaces_; ///< of the water met, for the passes after the first; with waves only
     double top_m_ = 0.0, water_top_m_ = 0.0; ///< highest node, above z = 0; highest level

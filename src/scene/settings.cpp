@@ -34,6 +34,7 @@ void RenderSettings::validate() const {
         throw Error(
             text("photons of the caustics are ", caustic_photons, " a side, must be 1, 2 or 4"));
     require_range("steps of the shafts", shaft_steps, 0, 256);
+    require_range("prisms of light", shaft_prisms, 4, 512);
     require_range("splits of the reference", reference_splits, 1, 8);
     require_range("dive light", dive_light_cd, 0.0, 1e6);
     require_range("radius of the port", port_m, 0.0, 2.0);

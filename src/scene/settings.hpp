@@ -49,6 +49,13 @@ enum class Caustics {
     back        ///< after Guardado & Sanchez-Crespo 2004
 };
 
+/// How shafts of light in the water are drawn.
+enum class Shafts {
+    march, ///< places along each view are looked up in the tiles of sunlight (passes/sunlit.comp)
+    prisms ///< prisms of light below a grid about the sun's image, after Lanza (2007); only for a
+           ///< camera in the water (passes/prisms.vert)
+};
+
 struct CausticsMethod {
     Caustics caustics;
     const char* name;   ///< as typed and shown
@@ -86,6 +93,8 @@ struct RenderSettings {
     int caustic_photons = 1; ///< of `splat`, on a side of a texel of the waves: 1, 2 or 4
     int shaft_steps = 2; ///< places along a view in the water where each of sixteen pixels side by
                          ///< side looks for shafts of light, [0, 256]; 0: none
+    Shafts shafts = Shafts::march;
+    int shaft_prisms = 128;             ///< of `prisms`, on a side of the grid, [4, 512]
     double least_transmittance = 0.002; ///< underwater paths end where less is left, [1e-6, .5]
     double dive_light_cd = 0.0; ///< a diver's lamp by the lens, [0, 1e6] candela along the view in
                                 ///< a cone of 15 degrees that fades to nothing at 25; in water only
