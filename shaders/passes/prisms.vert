@@ -20,8 +20,19 @@ const float near_m = 0.01;
 
 vec2 section_at(vec4 corner, float z) { return corner.xy + z * corner.zw; }
 
-// The section of a prism, integrated over depth from the level: powers of the depth.
-float volume_to(vec3 area, float z) { return z * (area.x + z * (0.5 * area.y + z * area.z / 3.0)); }
+float cross2(vec2 a, vec2 b) { return a.x * b.y - a.y * b.x; }
+
+// Volume of one length as it is drawn, with sides in two halves: < 0 where it is turned inside out. In thirds of a prism.
+//
+//   order  corners by their numbers: each half runs from the top of one to the foot of a later one
+float volume_between(vec4 corner[3], ivec3 order, float low, float high) {
+    vec3 a0 = vec3(section_at(corner[order.x], low), low);
+    vec3 a1 = vec3(section_at(corner[order.y], low), low) - a0, a2 = vec3(section_at(corner[order.z], low), low) - a0;
+    vec3 b0 = vec3(section_at(corner[order.x], high), high) - a0, b1 = vec3(section_at(corner[order.y], high), high) - a0,
+         b2 = vec3(section_at(corner[order.z], high), high) - a0;
+    float side = order.y == 1 ? 1.0 : -1.0; // corners are counter-clockwise, their numbers may not be
+    return side * (determinant(mat3(a1, a2, b2)) + determinant(mat3(a1, b2, b1)) + determinant(mat3(b1, b2, b0))) / 6.0;
+}
 
 // cuts — depths between the lengths of a prism: each twice as deep as the one before, but where its section turns
 //        about: there light focuses, and no length is to have both sides of that.
@@ -50,8 +61,6 @@ vec3 cuts(vec3 area, float bottom) {
     return cut;
 }
 
-float cross2(vec2 a, vec2 b) { return a.x * b.y - a.y * b.x; }
-
 void main() {
     int side = int(grid.w), cells = side - 1, lengths = 4;
     int prism = gl_InstanceID / lengths, part = gl_InstanceID % lengths, number = prism / 2;
@@ -73,8 +82,10 @@ void main() {
     vec3 area = 0.5 * vec3(cross2(e1.xy, e2.xy), cross2(e1.xy, e2.zw) + cross2(e1.zw, e2.xy), cross2(e1.zw, e2.zw));
     vec3 cut = cuts(area, depth.z);
     float low = part == 0 ? depth.y : cut[part - 1], high = part == 3 ? depth.z : cut[part], from = max(low, 0.0);
-    float volume = volume_to(area, high) - volume_to(area, from), least = 1e-3 * area.x * (high - from);
-    strength = abs(volume) > least ? flux * (high - from) / volume : 0.0;
+    // As much light as falls in; a length that is next to nothing is no brighter than a hundred times flat water.
+    float volume = volume_between(corner, upper ? ivec3(0, 2, 1) : ivec3(0, 1, 2), from, high);
+    float least = 0.01 * area.x * (high - from);
+    strength = flux * (high - from) / (abs(volume) < least ? (volume < 0.0 ? -least : least) : volume);
 
     int face = gl_VertexID / 3, v = gl_VertexID % 3;
     vec2 place;
@@ -98,7 +109,7 @@ void main() {
     float ahead = dot(from_eye, view.forward.xyz);
     vec2 plane = vec2(dot(from_eye, view.right.xyz) / view.right.w, dot(from_eye, view.up.xyz) / view.up.w);
     // From the whole picture to the tile that is drawn; rows go down.
-    vec2 size = vec2(view.counts.xy), tile = vec2(view.tile.zw);
+    vec2 tile = vec2(view.tile.zw);
     vec2 pixel = (plane * vec2(0.5, -0.5) + 0.5 * ahead) / view.inverse_size.zw - ahead * (vec2(view.tile.xy) + floor(view.offset.xy));
     gl_Position = vec4(2.0 * pixel / tile - ahead, ahead - 2.0 * near_m, ahead);
 }

@@ -79,6 +79,11 @@ std::vector<Variant> variants() {
     for (const int steps : {0, 1, 2, 4, 8})
         add("shafts", text(steps, steps == 1 ? " step" : " steps"), true,
             [steps](View& v) { v.settings.shaft_steps = steps; });
+    for (const int prisms : {32, 64, 128, 256})
+        add("shafts", text("prisms ", prisms), true, [prisms](View& v) {
+            v.settings.shafts = scene::Shafts::prisms;
+            v.settings.shaft_prisms = prisms;
+        });
     return out;
 }
 

@@ -21,7 +21,7 @@ namespace tarn::render {
 struct PrismGrid {
     glm::dvec2 first_m{0.0}; ///< the south-western corner
     double spacing_m = 1.0;
-    int cells = 128;             ///< on a side
+    int cells = 64;              ///< on a side
     double camera_depth_m = 1.0; ///< >= 0
     double top_m = -1.0;         ///< depth of the prisms' tops, < 0: above the level
     double bottom_m = 100.0;     ///< and of their bottoms

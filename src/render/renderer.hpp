@@ -227,7 +227,7 @@ private:
     gpu::Texture2D water_;  ///< the water's table (scene/water_colour.hpp) ...
     std::optional<std::pair<bool, scene::WaterOptics>> water_made_; ///< ... as it was made last
     bool prisms_asked_ = false; ///< of light, in place of places along each view
-    int prism_cells_ = 128;
+    int prism_cells_ = 64;
     std::optional<LightPrisms> prisms_;
     gpu::Texture2D sunlit_;   ///< how waves focus the light of each part, with caustics only
     gpu::Texture2D surfaces_; ///< of the water met, for the passes after the first; with waves only

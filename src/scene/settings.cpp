@@ -89,6 +89,7 @@ View at_its_best(View view) {
         s.caustics = Caustics::splat;
         s.caustic_texels = view.waves.texels;
         s.caustic_photons = 2;
+        s.shafts = Shafts::march;
         if (s.shaft_steps > 0)
             s.shaft_steps = std::max(s.shaft_steps, 16);
     }

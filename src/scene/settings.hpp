@@ -94,7 +94,7 @@ struct RenderSettings {
     int shaft_steps = 2; ///< places along a view in the water where each of sixteen pixels side by
                          ///< side looks for shafts of light, [0, 256]; 0: none
     Shafts shafts = Shafts::march;
-    int shaft_prisms = 128;             ///< of `prisms`, on a side of the grid, [4, 512]
+    int shaft_prisms = 64;              ///< of `prisms`, on a side of the grid, [4, 512]
     double least_transmittance = 0.002; ///< underwater paths end where less is left, [1e-6, .5]
     double dive_light_cd = 0.0; ///< a diver's lamp by the lens, [0, 1e6] candela along the view in
                                 ///< a cone of 15 degrees that fades to nothing at 25; in water only

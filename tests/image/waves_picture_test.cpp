@@ -2,6 +2,7 @@
 #include "core/error.hpp"
 #include "image/compare.hpp"
 #include "reference/tracer.hpp"
+#include "render/light_prisms.hpp"
 #include "render/renderer.hpp"
 #include "scene/presets.hpp"
 #include "scene/samples.hpp"
@@ -488,6 +489,25 @@ TEST(WavePictures, CausticsOnTheBedAreThoseOfTheReference) {
     }
 }
 
+// The grid of prisms lies on multiples of its spacing, about where the sun is seen, whatever metres
+// are counted from.
+TEST(WavePictures, PrismsOfLightStandStillWhileTheCameraMoves) {
+    const glm::dvec2 lean(0.3, -0.2);
+    const render::PrismGrid a = render::prism_grid({1000.0, 500.0}, {990.0, 490.0}, lean, 4.0, 64),
+                            b = render::prism_grid({1000.9, 500.4}, {1000.0, 500.0}, lean, 4.0, 64);
+    EXPECT_EQ(a.spacing_m, 0.25);
+    EXPECT_EQ(b.spacing_m, a.spacing_m);
+    const glm::dvec2 apart =
+        (b.first_m + glm::dvec2(1000.0, 500.0)) - (a.first_m + glm::dvec2(990.0, 490.0));
+    for (const double steps : {apart.x / a.spacing_m, apart.y / a.spacing_m})
+        EXPECT_NEAR(steps, std::round(steps), 1e-9);
+    const glm::dvec2 middle = a.first_m + glm::dvec2(990.0, 490.0) + 0.5 * 64 * a.spacing_m;
+    EXPECT_NEAR(middle.x, 1000.0 - 4.0 * lean.x, a.spacing_m);
+    EXPECT_NEAR(middle.y, 500.0 - 4.0 * lean.y, a.spacing_m);
+    // Twice as deep, twice as wide.
+    EXPECT_EQ(render::prism_grid({0, 0}, {0, 0}, lean, 8.0, 64).spacing_m, 0.5);
+}
+
 // Shafts of light: against the reference, which marches finely, within 5 %; in the mean as bright
 // as what flat water scatters, within 2 %; and no other number of steps changes that mean.
 TEST(WavePictures, ShaftsOfLightAreThoseOfTheReference) {
@@ -507,6 +527,20 @@ TEST(WavePictures, ShaftsOfLightAreThoseOfTheReference) {
             const Unlike steps = unlike(few, renderer.draw(view));
             view.settings.shaft_steps = 0;
             const Image none = renderer.draw(view);
+            for (const int prisms :
+                 {32, 64}) { // finer grids are brighter or darker by some percent
+
+                view.settings.shaft_steps = 2;
+                view.settings.shafts = scene::Shafts::prisms;
+                view.settings.shaft_prisms = prisms;
+                const Image drawn = renderer.draw(view);
+                const Unlike by_prisms = unlike(drawn, truth), level = unlike(drawn, none);
+                std::printf("  %d prisms: off by %.2f %%, mean %.4f of flat water's\n", prisms,
+                            100 * by_prisms.l1, level.mean);
+                EXPECT_LT(by_prisms.l1, 0.05) << water << heading;
+                EXPECT_NEAR(level.mean, 1.0, 0.025) << water << heading;
+                EXPECT_GT(level.l1, 0.002) << water << heading; // there are some
+            }
             const Unlike without = unlike(none, truth), flat = unlike(few, none);
             std::printf("%s, heading %3.0f: off by %.2f %% (without shafts %.2f %%), 2 against 64 "
                         "steps %.2f %%, mean %.4f of flat water's\n",
