@@ -34,7 +34,9 @@ Times time_on_gpu(const std::function<void()>& work, int runs) {
     std::sort(gpu.begin(), gpu.end());
     std::sort(cpu.begin(), cpu.end());
     const std::size_t n = gpu.size();
-    const bool usable = gpu[n / 2] > 1e-3;
+    // Software GL's timer answers nothing for compute shaders, and where triangles are drawn the
+    // time of day.
+    const bool usable = !gpu::is_software() && gpu[n / 2] > 1e-3;
     const auto& t = usable ? gpu : cpu;
     return {t[n / 2], t[n / 4], t[n * 3 / 4], usable ? "gpu timer" : "finish to finish"};
 }

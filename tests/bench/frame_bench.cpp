@@ -5,7 +5,8 @@
 //                    [--intersection METHOD] [--wind M/S] [--caustics METHOD] [--caustic-texels N]
 //                    [--caustic-photons N]
 //                    [--shaft-steps N] [--map 1] [--drag N] [--frames N] [--json FILE] [--ppm
-//                    PREFIX] [--lines N] [--port M] [--dive-light CD]
+//                    PREFIX] [--lines N] [--port M] [--dive-light CD] [--prisms N] [--glow 0|1]
+//                    [--water TYPE]
 // --view split: at the water's surface. --lines: random ones in space, some pixels wide.
 #include "bench/timing.hpp"
 #include "core/error.hpp"
@@ -14,6 +15,7 @@
 #include "render/renderer.hpp"
 #include "scene/presets.hpp"
 #include "scene/samples.hpp"
+#include "scene/water_types.hpp"
 #include "support/words.hpp"
 
 #include <algorithm>
@@ -81,7 +83,9 @@ int run(int argc, char** argv) {
     std::string caustics = "splat";
     int lines = 0;
     double port_m = 0.0, dive_light_cd = 0.0;
-    int caustic_texels = 0, caustic_photons = 1, shaft_steps = 2;
+    int caustic_texels = 0, caustic_photons = 1, shaft_steps = 2, prisms = 0;
+    bool glow = true;
+    std::string water;
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
         if (i + 1 >= argc)
@@ -101,6 +105,12 @@ int run(int argc, char** argv) {
             caustic_texels = std::atoi(value.c_str());
         else if (word == "--caustic-photons")
             caustic_photons = std::atoi(value.c_str());
+        else if (word == "--water")
+            water = value;
+        else if (word == "--prisms")
+            prisms = std::atoi(value.c_str());
+        else if (word == "--glow")
+            glow = std::atoi(value.c_str()) != 0;
         else if (word == "--shaft-steps")
             shaft_steps = std::atoi(value.c_str());
         else if (word == "--wind")
@@ -130,6 +140,8 @@ int run(int argc, char** argv) {
     bool first = true;
     for (const std::string& side : split(sides)) {
         scene::Scene scene = scene::mountain_lake(std::atoi(side.c_str()));
+        if (!water.empty())
+            scene.optics = scene::water_type(water);
         scene.space_strokes = random_strokes(scene, lines);
         const double level_m = scene.lakes.front().level_m;
         const auto load = std::chrono::steady_clock::now();
@@ -169,6 +181,11 @@ int run(int argc, char** argv) {
                     view.settings.caustic_texels = caustic_texels;
                     view.settings.caustic_photons = caustic_photons;
                     view.settings.shaft_steps = shaft_steps;
+                    view.settings.forward_glow = glow;
+                    if (prisms > 0) {
+                        view.settings.shafts = scene::Shafts::prisms;
+                        view.settings.shaft_prisms = prisms;
+                    }
                     for (const scene::CausticsMethod& m : scene::caustics_methods())
                         if (caustics == m.name)
                             view.settings.caustics = m.caustics;
