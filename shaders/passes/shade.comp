@@ -280,6 +280,17 @@ vec3 scattered_radiance(Part part, float from_m, float to_m, float water_m, floa
                path_radiance(water, view.water, sky_slant, depth, sink, water_m + from_m, length_m);
 }
 
+// Up to where the water's own light is summed. What lies before a rasterised thing and what lies behind it are to be as
+// bright together as the water without it, and the glow's sums are not as exact as that: all is taken, and of it what is
+// hidden taken off (overlay_radiance).
+float scattered_to(Part part, End end) {
+#ifdef TARN_GLOW
+    return (end.flags & end_overlay) != 0u ? max(reach(view, part), end.t) : end.t;
+#else
+    return end.t;
+#endif
+}
+
 // What is seen of something rasterised in the water: it is drawn by the light that was not scattered on the way. What
 // was scattered forwards is a blur of all that lies there, and for things that are small that is the water around them.
 vec3 overlay_radiance(Part part, End end, vec3 radiance) {
@@ -287,6 +298,9 @@ vec3 overlay_radiance(Part part, End end, vec3 radiance) {
         return radiance;
     vec3 drawn = image_transmittance(water, view.water, end.t);
     float blurred = 1.0 - drawn_share(drawn, end.t);
+#ifdef TARN_GLOW
+    blurred -= 1.0;
+#endif
     return drawn * radiance + blurred * scattered_radiance(part, end.t, max(reach(view, part), end.t), 0.0, 1.0);
 }
 
@@ -306,15 +320,7 @@ vec3 disc_left(float water_m) {
 vec3 part_radiance(Part part, End end, float before_m, float water_m, Sunlit sunlit) {
     vec3 radiance = vec3(0.0);
     if (part.in_water)
-        radiance = scattered_radiance(part, 0.0, end.t, water_m, sunlit.way);
-#ifdef TARN_GLOW
-    // What lies before a thing and what lies behind it are to be as bright together as the water without it.
-    if (part.in_water && (end.flags & end_overlay) != 0u) {
-        float all_m = max(reach(view, part), end.t);
-        radiance = scattered_radiance(part, 0.0, all_m, water_m, sunlit.way) -
-                   scattered_radiance(part, end.t, all_m, water_m, sunlit.way);
-    }
-#endif
+        radiance = scattered_radiance(part, 0.0, scattered_to(part, end), water_m, sunlit.way);
 #ifdef TARN_LAMP
     if (part.in_water && before_m == 0.0)
         radiance += lamp_scattered(part.direction, end.t);

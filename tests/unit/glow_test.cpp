@@ -165,7 +165,7 @@ TEST(Glow, AgreesWithPhotons) {
             for (const double tau : {0.5, 4.0}) {
                 const glm::dvec3 sun(std::sin(sun_deg * degree), 0.0, std::cos(sun_deg * degree));
                 const double depth = tau * sun.z, least_rise = 0.3;
-                const auto photons = by_photons(rings, sun, loss_per_m, depth, least_rise, 60'000);
+                const auto photons = by_photons(rings, sun, loss_per_m, depth, least_rise, 40'000);
                 const auto model = by_model(rings, sun, loss_per_m, depth, least_rise);
                 for (std::size_t r = 0; r < rings.size(); ++r) {
                     worst = std::max(worst, std::abs(model[r] / photons[r] - 1.0));
