@@ -32,7 +32,7 @@ Medium::Medium(const scene::WaterOptics& optics, bool spectral) : index_(optics.
     };
     if (spectral && !optics.bands.empty()) {
         waves_ = sum_over(2.5);
-        glow_waves_ = sum_over(10.0);
+        glow_waves_ = sum_over(5.0);
     } else {
         for (int c = 0; c < 3; ++c) {
             glm::dvec3 weight(0.0);

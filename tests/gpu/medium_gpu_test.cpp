@@ -180,6 +180,6 @@ TEST(MediumGpu, GlowAgrees) {
             "%-24s worst %.3f, of all scattered light more than 10 degrees off the sun %.3f\n",
             optics.name.c_str(), worst_near, worst_far);
         EXPECT_LE(worst_near, 0.015) << optics.name;
-        EXPECT_LE(worst_far, 0.06) << optics.name;
+        EXPECT_LE(worst_far, 0.015) << optics.name;
     }
 }
