@@ -499,7 +499,9 @@ TEST(SceneFolder, TwoProgramsAtOnceSeeWholeScenes) {
         }
     });
     std::set<double> levels;
-    for (int i = 0; i < 6; ++i) {
+    // Pictures may take as long as two imports do, and always find the same level: then others
+    // look.
+    for (int i = 0; i < 6 || (levels.size() < 2 && i < 100); ++i) {
         const std::string out = (t / ("p" + std::to_string(i) + ".png")).string();
         const Outcome o = run("tarn info " + scene + " --json");
         ASSERT_EQ(o.code, 0) << o.err;
@@ -509,6 +511,8 @@ TEST(SceneFolder, TwoProgramsAtOnceSeeWholeScenes) {
         levels.insert(level);
         EXPECT_NEAR(area, M_PI * 500.0 * 500.0 * level / 40.0, 0.01 * area)
             << "level and area of two scenes";
+        if (i >= 6)
+            continue;
         const Outcome drawn =
             run("tarn render " + scene + " --camera top --size 64x48 --samples 1 -o " + out);
         EXPECT_EQ(drawn.code, 0) << drawn.err;
