@@ -304,11 +304,14 @@ vec3 overlay_radiance(Part part, End end, vec3 radiance) {
     return drawn * radiance + blurred * scattered_radiance(part, end.t, max(reach(view, part), end.t), 0.0, 1.0);
 }
 
-// Share of the sun's disc, of what so much water lets through, that was not scattered and is seen in its place.
+// Share of the sun's disc, of what so much water lets through, that was not scattered and is seen in its place. Channels
+// out of gamut are negative in both.
 vec3 disc_left(float water_m) {
 #ifdef TARN_GLOW
-    if (water_m > 0.0)
-        return image_transmittance(water, view.water, water_m) / max(transmittance(water, view.water, water_m), vec3(1e-9));
+    if (water_m > 0.0) {
+        vec3 all = transmittance(water, view.water, water_m);
+        return image_transmittance(water, view.water, water_m) / mix(all, vec3(1e-9), lessThan(abs(all), vec3(1e-9)));
+    }
 #endif
     return vec3(1.0);
 }

@@ -364,9 +364,12 @@ private:
         if (light_.sun_disc) {
             const double solid_angle = pi * scene::sun_radius_rad * scene::sun_radius_rad;
             glm::dvec3 left(1.0);
-            if (settings_.forward_glow && water_m > 0.0)
-                left = medium_.image_transmittance(water_m) /
-                       glm::max(medium_.transmittance(water_m), glm::dvec3(1e-12));
+            if (settings_.forward_glow && water_m > 0.0) {
+                const glm::dvec3 all = medium_.transmittance(water_m),
+                                 seen = medium_.image_transmittance(water_m);
+                for (int k = 0; k < 3; ++k) // channels out of gamut are negative in both
+                    left[k] = std::abs(all[k]) > 1e-12 ? seen[k] / all[k] : 0.0;
+            }
             out += left * light_.sun_irradiance / solid_angle *
                    disc_share(direction, light_.sun_direction, scene::sun_radius_rad, pixel_rad_);
         }

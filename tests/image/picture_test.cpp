@@ -383,6 +383,39 @@ TEST(Picture, TheSunsDiscFadesIntoItsGlow) {
     }
 }
 
+// In blue water red is out of gamut, and negative: in the disc as in what the water lets through.
+TEST(Picture, TheDiscKeepsItsColourWhereAChannelIsOutOfGamut) {
+    test_support::context();
+    scene::Scene scene = scene::bowl(65);
+    scene.lakes[0].bed = Bed::unknown; // nothing but water
+    scene.optics = scene::water_type("jerlov I");
+    render::Renderer renderer(scene);
+    const reference::Medium medium(scene.optics, true);
+    scene::View view;
+    view.lighting = scene::clear_sky({0, 0, 1});
+    view.settings = {.width_px = 33, .height_px = 33, .samples = 1, .least_transmittance = 1e-6};
+    int negative = 0;
+    for (const double depth_m : {3.0, 12.0, 30.0}) {
+        view.camera = scene::look({0, 0, 10.0 - depth_m}, 0, 90, 3.0);
+        view.lighting.sun_disc = true;
+        const glm::dvec3 with = renderer.draw(view).radiance[16 * 33 + 16];
+        const glm::dvec3 truth = reference::trace(scene, view, {}).radiance[16 * 33 + 16];
+        view.lighting.sun_disc = false;
+        const glm::dvec3 disc = with - glm::dvec3(renderer.draw(view).radiance[16 * 33 + 16]),
+                         expected =
+                             view.lighting.sun_irradiance * medium.image_transmittance(depth_m);
+        negative += medium.transmittance(depth_m).r < 0.0;
+        std::printf("%.1f m: disc %.5f %.5f of green, expected %.5f %.5f\n", depth_m,
+                    disc.r / disc.g, disc.b / disc.g, expected.r / expected.g,
+                    expected.b / expected.g);
+        EXPECT_NEAR(disc.r / disc.g, expected.r / expected.g, 0.01) << depth_m;
+        EXPECT_NEAR(disc.b / disc.g, expected.b / expected.g, 0.01) << depth_m;
+        for (int k = 0; k < 3; ++k)
+            EXPECT_NEAR(with[k], truth[k], 0.01 * truth.g) << depth_m;
+    }
+    EXPECT_GT(negative, 0); // there is something to see
+}
+
 TEST(Picture, WatersByTheirWavelengths) {
     scene::Scene scene = scene::mountain_lake(257);
     for (const char* name : {"jerlov I", "clear lake", "humic lake", "glacial lake"}) {
