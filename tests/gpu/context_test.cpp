@@ -26,9 +26,18 @@ TEST(Shaders, EveryPassCompiles) {
     test_support::context();
     int passes = 0;
     for (const auto& entry : std::filesystem::directory_iterator(TARN_SHADER_ROOT "/passes")) {
-        EXPECT_NO_THROW(gpu::ComputeProgram(
-            gpu::load_shader(TARN_SHADER_ROOT, "passes/" + entry.path().filename().string())))
-            << entry.path();
+        const auto load = [](const std::string& file) {
+            return gpu::load_shader(TARN_SHADER_ROOT, "passes/" + file);
+        };
+        const std::string name = entry.path().filename().string(),
+                          stem = entry.path().stem().string();
+        if (entry.path().extension() == ".vert")
+            EXPECT_NO_THROW(gpu::DrawProgram(load(name), load(stem + ".frag"))) << name;
+        else if (entry.path().extension() == ".comp")
+            EXPECT_NO_THROW(gpu::ComputeProgram(load(name))) << name;
+        else
+            EXPECT_TRUE(std::filesystem::exists(entry.path().parent_path() / (stem + ".vert")))
+                << name;
         ++passes;
     }
     EXPECT_GE(passes, 3);
@@ -39,7 +48,7 @@ TEST(Shaders, EveryPassCompiles) {
                 text("#define TARN_WAVES 1\n#define TARN_CASCADES ", cascades, "\n"))))
                 << pass;
     for (const char* pass : {"sunlit", "shade"})
-        for (const char* shafts : {"0", "2"})
+        for (const char* shafts : {"0", "2", "0\n#define TARN_PRISMS 1", "2\n#define TARN_GLOW 1"})
             for (const char* more : {"", "#define TARN_LAND_SHADOW 1\n#define TARN_HAZE 1\n",
                                      "#define TARN_LAND_SHADOW 1\n#define TARN_WHOLE_SKY 1\n"})
                 EXPECT_NO_THROW(gpu::ComputeProgram(gpu::load_shader(
