@@ -99,18 +99,21 @@ glm::dvec3 Medium::glow_radiance(double slant, double depth_m, double sink, doub
         greatest = std::max(greatest, wave.attenuation_per_m + wave.forward_per_m);
     // Pieces, each longer than the one before it, that the path grows little along.
     const int pieces =
-        std::clamp(int(std::ceil(4.0 * greatest * std::abs(rate) * distance_m)), 1, 16);
+        std::clamp(int(std::ceil(2.0 * greatest * std::abs(rate) * distance_m)), 1, 6);
     for (int i = 0; i < pieces; ++i) {
         const double from = distance_m * std::pow(double(i) / pieces, 2.0),
                      to = distance_m * std::pow((i + 1.0) / pieces, 2.0);
         for (const Wave& wave : glow_waves_) {
+            if (!(wave.forward_per_m > 0.0))
+                continue;
             // What a piece brings, and the mean of its paths, by the exponential's moments; counted
             // from the end where the light has come the shorter way, so that nothing overflows.
             const double c = wave.attenuation_per_m, gain = rate * (to - from),
                          x = c * std::abs(gain);
             const double shortest = std::max(start + rate * from + std::min(gain, 0.0), 0.0);
-            const double mean = x < 1e-9 ? 1.0 : -std::expm1(-x) / x;
-            const double place = x < 1e-4 ? 0.5 : 1.0 / x - 1.0 / std::expm1(x);
+            const bool short_one = x < 0.02; // to 1e-5
+            const double mean = short_one ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
+            const double place = short_one ? 0.5 - x / 12.0 : 1.0 / x - 1.0 / std::expm1(x);
             const double tau = wave.forward_per_m * (shortest + place * std::abs(gain));
             sum +=
                 wave.weight * (wave.forward_per_m * (to - from) * mean * std::exp(-c * shortest) *
