@@ -95,9 +95,9 @@ vec3 path_radiance(sampler2D table, vec4 scale, float slant, float depth_m, floa
 //   the others and what it is a share of: as in path_radiance()
 // Accuracy 1.5 % of the sum over wavelengths near the sun, beside it 1.5 % of all scattered light
 // (tests/gpu/medium_gpu_test.cpp).
-
 vec3 glow_radiance(sampler2D glow, vec4 scale, float fall, float slant, float depth_m, float sink, float before_m,
                    float distance_m, float angle_rad) {
+    // As scene::GlowTable spaces its angles.
     const float least_rad = 0.004, angles = 1.0 / log(1.0 + 3.14159265359 / least_rad);
     if (angle_rad >= 1.57079632679)
         return vec3(0.0);

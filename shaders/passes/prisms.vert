@@ -22,7 +22,7 @@ vec2 section_at(vec4 corner, float z) { return corner.xy + z * corner.zw; }
 
 float cross2(vec2 a, vec2 b) { return a.x * b.y - a.y * b.x; }
 
-// Volume of one length as it is drawn, with sides in two halves: < 0 where it is turned inside out. In thirds of a prism.
+// Volume of one length as it is drawn, with sides in two halves: < 0 where it is turned inside out. Three tetrahedra.
 //
 //   order  corners by their numbers: each half runs from the top of one to the foot of a later one
 float volume_between(vec4 corner[3], ivec3 order, float low, float high) {
@@ -84,7 +84,7 @@ void main() {
     float low = part == 0 ? depth.y : cut[part - 1], high = part == 3 ? depth.z : cut[part], from = max(low, 0.0);
     // As much light as falls in; a length that is next to nothing is no brighter than a hundred times flat water.
     float volume = volume_between(corner, upper ? ivec3(0, 2, 1) : ivec3(0, 1, 2), from, high);
-    float least = 0.01 * area.x * (high - from);
+    float least = 0.01 * area.x * max(high - from, 1e-6);
     strength = flux * (high - from) / (abs(volume) < least ? (volume < 0.0 ? -least : least) : volume);
 
     int face = gl_VertexID / 3, v = gl_VertexID % 3;

@@ -55,8 +55,7 @@ std::string Renderer::shade_defines() const {
            (bed_shadowed_ ? "#define TARN_BED_SHADOW 1\n" : "") +
            (mapped_ ? "#define TARN_MAP 1\n" : "") +
            (space_lines_.id() != 0 ? "#define TARN_SPACE_LINES 1\n" : "") +
-           (lamp_ ? "#define TARN_LAMP 1\n" : "") +
-           (glow_asked_ && (under_water() || port_) ? "#define TARN_GLOW 1\n" : "");
+           (lamp_ ? "#define TARN_LAMP 1\n" : "") + (glows() ? "#define TARN_GLOW 1\n" : "");
 }
 
 // What every pass that follows a path must know: scenes that are small, cameras that are in one
@@ -258,7 +257,7 @@ void Renderer::prepare(const scene::View& view) {
     block_.optics.x = float(optics.index);
     block_.optics.y = float(scene::greatest_path_m(optics, settings));
     upload_water(settings.spectral);
-    prepare_glow(view);
+    forwards_ = scatters_forwards(view);
     const double level = scene_.lakes.front().level_m;
     block_.look = {float(scene_.look.tree_line_m - ground.offset_m),
                    float(scene_.look.snow_line_m - ground.offset_m), float(level - ground.offset_m),
@@ -424,6 +423,8 @@ void Renderer::locate_camera() {
         in_slab_ = wavy();
         find_port_heights(*water);
     }
+    if (glows())
+        upload_glow();
 }
 
 // The water around a camera that is half in it.

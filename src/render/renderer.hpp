@@ -175,7 +175,8 @@ private:
     std::string walk_file() const;
     void prepare_waves(const scene::View& view);
     void upload_water(bool spectral);
-    void prepare_glow(const scene::View& view);
+    bool scatters_forwards(const scene::View& view) const;
+    void upload_glow();
     void bind_images();
     void locate_camera();
     void find_port_heights(double level_m);
@@ -188,6 +189,7 @@ private:
     void find_beams();
     void set_sample(int sample, int samples);
     void draw_tile();
+    bool glows() const { return forwards_ && (under_water() || port_); }
     bool prisms() const { return prisms_asked_ && caustics_ && under_water() && !port_; }
     void draw_prisms();
 
@@ -202,8 +204,8 @@ private:
     std::vector<glm::vec3> sky_made_;                  ///< as it is on the GPU
     bool hazy_ = false, whole_sky_ = false, mapped_ = false, curved_ = false, coarse_ = false,
          port_ = false, lamp_ = false, cut_water_ = false;
-    bool glow_asked_ = false; ///< the sun's light is scattered forwards, if the camera is in water
-    gpu::Texture2D glow_;     ///< scene::make_glow_colours() ...
+    bool forwards_ = false; ///< the water scatters the sun's light forwards, as a camera in it sees
+    gpu::Texture2D glow_;   ///< scene::make_glow_colours() ...
     std::optional<scene::WaterOptics> glow_made_; ///< ... of that water
     gpu::Texture2D port_heights_;
     std::map<std::string, gpu::ComputeProgram> port_passes_; ///< by the waves' defines
@@ -226,6 +228,7 @@ private:
     int shaft_steps_ = 0;   ///< places along a view that shafts of light are looked up at; 0: none
     gpu::Texture2D water_;  ///< the water's table (scene/water_colour.hpp) ...
     std::optional<std::pair<bool, scene::WaterOptics>> water_made_; ///< ... as it was made last
+    double water_longest_m_ = 1.0;                                  ///< its last path
     bool prisms_asked_ = false; ///< of light, in place of places along each view
     int prism_cells_ = 64;
     std::optional<LightPrisms> prisms_;

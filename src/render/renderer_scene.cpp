@@ -199,6 +199,7 @@ void Renderer::upload_water(bool spectral) {
         water_.upload(GL_RGBA, GL_FLOAT, table.packed().data());
         block_.water = table.scale();
         block_.optics.z = float(table.sky_entering);
+        water_longest_m_ = table.longest_m;
         // By the path after which a third of the luminance is left.
         int texel = 1;
         const auto luminance = [&](int i) {
@@ -213,19 +214,21 @@ void Renderer::upload_water(bool spectral) {
 }
 
 // Waters of three channels say nothing of what they scatter forwards.
-void Renderer::prepare_glow(const scene::View& view) {
-    const scene::WaterOptics& optics = scene_.optics;
+bool Renderer::scatters_forwards(const scene::View& view) const {
     const auto scatters = [](const scene::WaterBand& band) { return band.forward_per_m() > 0.0; };
+    const auto& bands = scene_.optics.bands;
     const glm::dvec3 sun = view.lighting.sun_irradiance;
-    glow_asked_ = view.settings.forward_glow && view.settings.spectral &&
-                  view.lighting.sun_direction.z > 0.0 && sun.x + sun.y + sun.z > 0.0 &&
-                  std::any_of(optics.bands.begin(), optics.bands.end(), scatters);
-    if (!glow_asked_)
-        return;
-    if (glow_made_ != optics) {
-        glow_made_ = optics;
+    return view.settings.forward_glow && view.settings.spectral &&
+           view.lighting.sun_direction.z > 0.0 && sun.x + sun.y + sun.z > 0.0 &&
+           std::any_of(bands.begin(), bands.end(), scatters);
+}
+
+// Only for a camera that sees it.
+void Renderer::upload_glow() {
+    if (glow_made_ != scene_.optics) {
+        glow_made_ = scene_.optics;
         const scene::GlowColours colours =
-            scene::make_glow_colours(optics, scene::make_water_table(optics, true));
+            scene::make_glow_colours(scene_.optics, water_longest_m_);
         glow_ = gpu::Texture2D(GL_RGBA32F, colours.angles, colours.paths, 1, gpu::Filter::linear,
                                "glow");
         glow_.upload(GL_RGBA, GL_FLOAT, colours.rgb.data());

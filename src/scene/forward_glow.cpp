@@ -16,7 +16,8 @@ double fournier_forand(double theta) {
     constexpr double n = 1.10, mu = 3.5835, nu = (3.0 - mu) / 2.0;
     const double s2 = std::pow(std::sin(0.5 * theta), 2.0);
     const double scale = 4.0 / (3.0 * (n - 1.0) * (n - 1.0));
-    const double d = scale * s2, d180 = scale;
+    const double off = scale * s2 - 1.0, d180 = scale;
+    const double d = std::abs(off) < 1e-5 ? 1.0 + 1e-5 : scale * s2; // at 1 the form is 0 / 0
     const double dn = std::pow(d, nu), d180n = std::pow(d180, nu);
     const double peak = nu * (1.0 - d) - (1.0 - dn) + (d * (1.0 - dn) - nu * (1.0 - d)) / s2;
     return peak / (4.0 * pi * (1.0 - d) * (1.0 - d) * dn) +

@@ -99,8 +99,8 @@ glm::dvec3 sunlight_colour(double nm) {
                             0.0557 * x - 0.2040 * y + 1.0570 * z);
 }
 
-double WaterTable::path_m(int texel) const {
-    return shortest_m * std::expm1(std::log1p(longest_m / shortest_m) * texel / (texels - 1));
+double WaterTable::path_m(double share, double longest_m) {
+    return shortest_m * std::expm1(std::log1p(longest_m / shortest_m) * share);
 }
 
 std::vector<glm::vec4> WaterTable::packed() const {
@@ -183,16 +183,14 @@ WaterTable make_water_table(const WaterOptics& optics, bool spectral) {
     return table;
 }
 
-GlowColours make_glow_colours(const WaterOptics& optics, const WaterTable& table) {
+GlowColours make_glow_colours(const WaterOptics& optics, double longest_m) {
     const GlowTable& glow = glow_table();
     GlowColours out;
     out.angles = glow.angles;
     const std::vector<Band> bands = bands_of(optics, true);
     std::vector<glm::dvec3> sum(std::size_t(glow.angles));
     for (int row = 0; row < out.paths; ++row) {
-        const double share = row / double(out.paths - 1);
-        const double x =
-            table.shortest_m * std::expm1(std::log1p(table.longest_m / table.shortest_m) * share);
+        const double x = WaterTable::path_m(double(row) / (out.paths - 1), longest_m);
         std::fill(sum.begin(), sum.end(), glm::dvec3(0.0));
         for (const Band& band : bands) {
             const glm::dvec3 left =

@@ -36,8 +36,10 @@ struct WaterTable {
     double sky_entering = 1.0;                 ///< share of an even sky that a flat surface lets in
     std::array<std::vector<glm::vec3>, 6> rows;
 
+    /// The path at a share of the way from the first texel to the last [m].
+    static double path_m(double share, double longest_m);
     /// The path at a texel [m]: shortest_m (exp(i s) - 1).
-    double path_m(int texel) const;
+    double path_m(int texel) const { return path_m(double(texel) / (texels - 1), longest_m); }
     /// As shaders/lib/medium.glsl takes it: the rows one after another, and what turns a path into
     /// a place in them.
     std::vector<glm::vec4> packed() const;
@@ -53,10 +55,11 @@ WaterTable make_water_table(const WaterOptics& optics, bool spectral);
 struct GlowColours {
     static constexpr int paths = 256;
     int angles = 0;
-    std::vector<glm::vec4> rgb; ///< [path][angle], alpha 0; paths spaced as the table's are
+    std::vector<glm::vec4> rgb; ///< [path][angle], alpha 0; paths spaced as a WaterTable's are
 };
 
-/// @pre  optics have bands
-GlowColours make_glow_colours(const WaterOptics& optics, const WaterTable& table);
+/// @param longest_m  the last path: WaterTable::longest_m
+/// @pre   optics have bands
+GlowColours make_glow_colours(const WaterOptics& optics, double longest_m);
 
 } // namespace tarn::scene

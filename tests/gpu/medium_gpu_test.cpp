@@ -24,7 +24,7 @@ public:
                                   gpu::Filter::nearest, "water");
         texture_.upload(GL_RGBA, GL_FLOAT, table.packed().data());
         if (!optics.bands.empty()) {
-            const scene::GlowColours colours = scene::make_glow_colours(optics, table);
+            const scene::GlowColours colours = scene::make_glow_colours(optics, table.longest_m);
             glow_ = gpu::Texture2D(GL_RGBA32F, colours.angles, colours.paths, 1,
                                    gpu::Filter::linear, "glow");
             glow_.upload(GL_RGBA, GL_FLOAT, colours.rgb.data());
