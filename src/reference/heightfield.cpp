@@ -14,7 +14,7 @@ struct Patch {
     double at(double u, double v) const {
         return (1 - u) * (1 - v) * nw + u * (1 - v) * ne + (1 - u) * v * sw + u * v * se;
     }
-    double highest() const { return std::max({nw, ne, sw, se}); }
+    double highest() const { return std::max(std::max(nw, ne), std::max(sw, se)); }
 };
 
 /// Smallest t in [a, b] with gap(t) <= 0, where gap is a quadratic; nothing if there is none.
@@ -91,6 +91,17 @@ std::optional<Hit> trace_field(const Heightfield& ground, const Heightfield* wat
     else if (direction.z < 0.0)
         t1 = std::min(t1, (bottom_m - origin.z) / direction.z);
     else if (origin.z < bottom_m)
+        return {};
+    // A ray that rises has met all it can where it comes above the highest code of both fields.
+    const auto ceiling_of = [](const Heightfield& f) { return f.offset_m + f.scale_m * 65535.0; };
+    const double ceiling =
+        water ? std::max(ceiling_of(ground), ceiling_of(*water)) : ceiling_of(ground);
+    const double to_ceiling = ceiling - origin.z;
+    if (direction.z > 0.0 && to_ceiling > 0.0) {
+        // Of both forms of the quadratic's root the one that does not cancel.
+        const double root = std::sqrt(direction.z * direction.z + 4.0 * bend * to_ceiling);
+        t1 = std::min(t1, 2.0 * to_ceiling / (direction.z + root) * (1.0 + 1e-9));
+    } else if (direction.z > 0.0 && to_ceiling < 0.0)
         return {};
     clip(oc, dc, size.cols - 1);
     clip(orow, dr, size.rows - 1);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 namespace tarn::reference {
 
@@ -64,6 +65,13 @@ glm::dvec3 Medium::pattern_transmittance(double path_m) const {
     return sum;
 }
 
+double Medium::pattern_share(double path_m) const {
+    const glm::dvec3 luminance(0.2126, 0.7152, 0.0722);
+    return std::clamp(glm::dot(luminance, pattern_transmittance(path_m)) /
+                          std::max(glm::dot(luminance, transmittance(path_m)), 1e-12),
+                      0.0, 1.0);
+}
+
 glm::dvec3 Medium::image_transmittance(double path_m) const {
     glm::dvec3 sum(0.0);
     for (const Wave& wave : waves_)
@@ -112,8 +120,9 @@ glm::dvec3 Medium::glow_radiance(double slant, double depth_m, double sink, doub
                          x = c * std::abs(gain);
             const double shortest = std::max(start + rate * from + std::min(gain, 0.0), 0.0);
             const bool short_one = x < 0.02; // to 1e-5
-            const double mean = short_one ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
-            const double place = short_one ? 0.5 - x / 12.0 : 1.0 / x - 1.0 / std::expm1(x);
+            const double lost = -std::expm1(-x);
+            const double mean = short_one ? 1.0 - 0.5 * x : lost / x;
+            const double place = short_one ? 0.5 - x / 12.0 : 1.0 / x - (1.0 - lost) / lost;
             const double tau = wave.forward_per_m * (shortest + place * std::abs(gain));
             sum +=
                 wave.weight * (wave.forward_per_m * (to - from) * mean * std::exp(-c * shortest) *

@@ -23,6 +23,8 @@ public:
     glm::dvec3 thrown_back(double depth_m) const;
     glm::dvec3 image_transmittance(double path_m) const;
     glm::dvec3 pattern_transmittance(double path_m) const;
+    /// Share of the light that is left which still draws patterns, by luminance; [0, 1].
+    double pattern_share(double path_m) const;
     /// Share of an even sky that a flat surface lets in, by integrating over the angles in air.
     double sky_entering() const { return sky_entering_; }
 

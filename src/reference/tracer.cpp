@@ -111,6 +111,10 @@ public:
                                     .schlick = settings_.fresnel == scene::Fresnel::schlick,
                                     .disc_rad = scene::sun_radius_rad},
                         deepest_m(scene));
+                if (tiles_)
+                    for (int i = 0; i <= beam_steps; ++i)
+                        beam_shares_.push_back(medium_.pattern_share(
+                            beam_reach_m * std::pow(double(i) / beam_steps, 2.0)));
             }
         }
         const glm::dvec3& p = camera_.position;
@@ -173,6 +177,15 @@ private:
         for (int k = 0; k < draws; ++k)
             sum += tiles_->focus({p.x, p.y}, depth, shares, [&] { return even(random); });
         return sum / draws;
+    }
+
+    /// Share of the sun's light that still draws patterns: shafts ask for it a hundred times a ray.
+    double beam_share(double way_m) const {
+        const double at = std::sqrt(way_m / beam_reach_m) * beam_steps;
+        if (!(at < beam_steps))
+            return medium_.pattern_share(way_m);
+        const std::size_t low = std::size_t(at);
+        return std::lerp(beam_shares_[low], beam_shares_[low + 1], at - double(low));
     }
 
     /// How a ray in the air rises over its direction, heights counted from level ground [1/m].
@@ -525,11 +538,7 @@ private:
         double slope = 0.0;
         const glm::dvec3 normal = normal_at(hit, slope);
         glm::dvec3 colour = albedo(hit, true, level, slope, footprint);
-        const glm::dvec3 luminance(0.2126, 0.7152, 0.0722);
-        const double drawn =
-            std::clamp(glm::dot(luminance, medium_.pattern_transmittance(water_m)) /
-                           std::max(glm::dot(luminance, medium_.transmittance(water_m)), 1e-9),
-                       0.0, 1.0);
+        const double drawn = medium_.pattern_share(water_m);
         // What was scattered wide on the way to the eye comes from some 12 degrees around.
         colour += (1.0 - drawn) *
                   (albedo(hit, true, level, slope, std::max(footprint, 0.2 * water_m)) - colour);
@@ -814,7 +823,6 @@ private:
         };
         if (!(shafts || settings_.shadows) || !(length > 0.0))
             return between(0.0, length);
-        const glm::dvec3 luminance(0.2126, 0.7152, 0.0722);
         const int pieces = shafts ? 96 : 24; // each longer than the one before it
         glm::dvec3 sum(0.0);
         double lit_from = 0.0; // pieces in the sun, side by side, are one
@@ -833,12 +841,8 @@ private:
             }
             if (!shafts)
                 continue;
-            const double beam =
-                std::clamp(glm::dot(luminance, medium_.pattern_transmittance(way)) /
-                               std::max(glm::dot(luminance, medium_.transmittance(way)), 1e-12),
-                           0.0, 1.0);
             sum += between(from, to) *
-                   (1.0 + (focus_at(origin + t * direction, deep, 1) - 1.0) * beam);
+                   (1.0 + (focus_at(origin + t * direction, deep, 1) - 1.0) * beam_share(way));
         }
         if (!shafts && length > lit_from)
             sum += between(lit_from, length);
@@ -860,7 +864,11 @@ private:
     waves::Sea sea_;
     std::optional<WaveSurface> waves_;
     std::shared_ptr<const SunTiles> tiles_; ///< of light that the waves focus
-    Heightfield raised_;                    ///< the water, as high as its waves may come
+    /// By the root of the way: linear between them, off by less than 1e-4 also where c = 20/m.
+    static constexpr double beam_reach_m = 200.0;
+    static constexpr int beam_steps = 10000;
+    std::vector<double> beam_shares_;
+    Heightfield raised_; ///< the water, as high as its waves may come
 };
 
 } // namespace

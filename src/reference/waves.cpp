@@ -11,27 +11,10 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// Of a periodic lattice, by the cubic through four neighbours on each axis.
-double cubic(const std::vector<double>& values, int side, double x, double y) {
-    const double fx = std::floor(x), fy = std::floor(y);
-    const double u = x - fx, v = y - fy;
-    const auto weights = [](double t, double* w) {
-        w[0] = 0.5 * t * (-1.0 + t * (2.0 - t));
-        w[1] = 0.5 * (2.0 + t * t * (-5.0 + 3.0 * t));
-        w[2] = 0.5 * t * (1.0 + t * (4.0 - 3.0 * t));
-        w[3] = 0.5 * t * t * (t - 1.0);
-    };
-    double wx[4], wy[4];
-    weights(u, wx);
-    weights(v, wy);
-    const auto wrap = [side](long i) { return std::size_t(((i % side) + side) % side); };
-    double sum = 0.0;
-    for (int j = 0; j < 4; ++j) {
-        const std::size_t row = wrap(long(fy) + j - 1) * std::size_t(side);
-        for (int i = 0; i < 4; ++i)
-            sum += wx[i] * wy[j] * values[row + wrap(long(fx) + i - 1)];
-    }
-    return sum;
+/// Weights of the cubic through four neighbours (Catmull & Rom), t in [0, 1) behind the second.
+std::array<double, 4> cubic_weights(double t) {
+    return {0.5 * t * (-1.0 + t * (2.0 - t)), 0.5 * (2.0 + t * t * (-5.0 + 3.0 * t)),
+            0.5 * t * (1.0 + t * (4.0 - 3.0 * t)), 0.5 * t * t * (t - 1.0)};
 }
 
 } // namespace
@@ -67,6 +50,8 @@ WaveFields wave_fields(const waves::Cascade& c, double time_s, double loop_s, in
                                       &out.dy,     &out.dxx,     &out.dxy,     &out.dyy};
     for (int f = 0; f < 4; ++f) {
         const std::vector<Complex> both = fft_inverse_2d(std::move(spectra[f]), m);
+        fields[2 * f]->reserve(both.size());
+        fields[2 * f + 1]->reserve(both.size());
         for (const Complex& v : both) {
             fields[2 * f]->push_back(v.real());
             fields[2 * f + 1]->push_back(v.imag());
@@ -79,13 +64,14 @@ WaveSurface::WaveSurface(const waves::Sea& sea, double time_s)
     : sea_(sea), time_s_(time_s), bound_m_(sea.bound_m), step_m_(1e9) {
     for (const waves::Cascade& c : sea.cascades) {
         if (c.ripples) { // counted as roughness by the tracer
-            fields_.emplace_back();
+            lattices_.emplace_back();
             continue;
         }
-        fields_.push_back(wave_fields(c, time_s, sea.settings.loop_s, 2));
+        const WaveFields f = wave_fields(c, time_s, sea.settings.loop_s, 2);
         step_m_ = std::min(step_m_, 0.05 * c.texel_m());
         double most = 0.0; // of the displaced surface; a fifth more for what lies between nodes
-        const WaveFields& f = fields_.back();
+        Lattice& lattice = lattices_.emplace_back(Lattice{.side = f.side, .nodes = {}});
+        lattice.nodes.reserve(f.height.size());
         for (std::size_t i = 0; i < f.height.size(); ++i) {
             const double xx = 1.0 + c.choppiness * f.dxx[i], yy = 1.0 + c.choppiness * f.dyy[i],
                          xy = c.choppiness * f.dxy[i];
@@ -93,6 +79,8 @@ WaveSurface::WaveSurface(const waves::Sea& sea, double time_s)
             most = std::max(most, std::hypot(yy * f.slope_x[i] - xy * f.slope_y[i],
                                              xx * f.slope_y[i] - xy * f.slope_x[i]) /
                                       determinant);
+            lattice.nodes.push_back({f.height[i], f.slope_x[i], f.slope_y[i], f.dx[i], f.dy[i],
+                                     f.dxx[i], f.dxy[i], f.dyy[i]});
         }
         steepest_ += 1.2 * most;
     }
@@ -117,30 +105,45 @@ double WaveSurface::share(glm::dvec2 place, std::size_t cascade) const {
                      std::lerp(at(c, r1), at(c1, r1), col - c), row - r);
 }
 
+std::array<double, 8> WaveSurface::Lattice::at(double x, double y) const {
+    const double fx = std::floor(x), fy = std::floor(y);
+    const std::array<double, 4> wx = cubic_weights(x - fx), wy = cubic_weights(y - fy);
+    const long mask = side - 1;
+    std::array<double, 8> sum{};
+    for (long j = 0; j < 4; ++j) {
+        const std::array<double, 8>* row = &nodes[std::size_t(((long(fy) + j - 1) & mask) * side)];
+        for (long i = 0; i < 4; ++i) {
+            const std::array<double, 8>& node = row[(long(fx) + i - 1) & mask];
+            const double weight = wx[std::size_t(i)] * wy[std::size_t(j)];
+            for (std::size_t k = 0; k < 8; ++k)
+                sum[k] += weight * node[k];
+        }
+    }
+    return sum;
+}
+
 WaveSurface::Sample WaveSurface::at(std::size_t number, glm::dvec2 place) const {
     const waves::Cascade& c = sea_.cascades[number];
-    const WaveFields& f = fields_[number];
-    const double per_m = f.side / c.patch_m;
-    const auto look = [&](const std::vector<double>& values, glm::dvec2 p) {
-        return cubic(values, f.side, p.x * per_m, p.y * per_m);
-    };
-    const double chop = c.choppiness;
+    const Lattice& lattice = lattices_[number];
+    const double per_m = lattice.side / c.patch_m, chop = c.choppiness;
     glm::dvec2 p = place; // the point that is now over the place
+    auto [height, sx, sy, dx, dy, dxx, dxy, dyy] = lattice.at(p.x * per_m, p.y * per_m);
     double xx = 1.0, xy = 0.0, yy = 1.0;
     for (int i = 0; i < 20 && chop > 0.0; ++i) {
-        xx = 1.0 + chop * look(f.dxx, p);
-        xy = chop * look(f.dxy, p);
-        yy = 1.0 + chop * look(f.dyy, p);
-        const double ex = place.x - p.x - chop * look(f.dx, p),
-                     ey = place.y - p.y - chop * look(f.dy, p);
+        xx = 1.0 + chop * dxx;
+        xy = chop * dxy;
+        yy = 1.0 + chop * dyy;
+        const double ex = place.x - p.x - chop * dx, ey = place.y - p.y - chop * dy;
         const double determinant = std::max(xx * yy - xy * xy, 0.05);
         p += glm::dvec2(yy * ex - xy * ey, xx * ey - xy * ex) / determinant;
+        const std::array<double, 8> next = lattice.at(p.x * per_m, p.y * per_m);
+        height = next[0], sx = next[1], sy = next[2], dx = next[3], dy = next[4], dxx = next[5],
+        dxy = next[6], dyy = next[7];
         if (std::hypot(ex, ey) < 1e-9 * c.patch_m)
             break;
     }
-    const double sx = look(f.slope_x, p), sy = look(f.slope_y, p);
     const double determinant = std::max(xx * yy - xy * xy, 0.0025);
-    return {std::clamp(look(f.height, p), -c.bound_m, c.bound_m),
+    return {std::clamp(height, -c.bound_m, c.bound_m),
             {(yy * sx - xy * sy) / determinant, (xx * sy - xy * sx) / determinant}};
 }
 

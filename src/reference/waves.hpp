@@ -7,6 +7,7 @@
 /// method. Waves, amplitudes and fades are those of waves/sea.hpp.
 #include "waves/sea.hpp"
 
+#include <array>
 #include <functional>
 #include <glm/vec2.hpp>
 #include <vector>
@@ -54,7 +55,15 @@ private:
 
     const waves::Sea& sea_;
     double time_s_, bound_m_, step_m_, steepest_ = 0.0;
-    std::vector<WaveFields> fields_;
+    /// A cascade's fields side by side, for they are looked up together: height, both slopes, both
+    /// displacements, their derivatives xx, xy, yy.
+    struct Lattice {
+        int side = 0; ///< a power of two
+        std::vector<std::array<double, 8>> nodes;
+        /// All of them between nodes; x and y in nodes.
+        std::array<double, 8> at(double x, double y) const;
+    };
+    std::vector<Lattice> lattices_;
 };
 
 } // namespace tarn::reference

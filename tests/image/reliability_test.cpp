@@ -1,7 +1,7 @@
 // Many pictures in one process: nothing grows, nothing is left over from the one before.
-#include "gpu/context.hpp"
 #include "render/renderer.hpp"
 #include "scene/samples.hpp"
+#include "support/gpu_function.hpp"
 
 #include <fstream>
 #include <glm/geometric.hpp>
@@ -22,7 +22,7 @@ double resident_mb() {
 } // namespace
 
 TEST(Reliability, AThousandPicturesInOneProcessDoNotGrow) {
-    const gpu::Context context;
+    test_support::context(); // another, and its end would take the tests' own away
     const scene::Scene scene = scene::bowl(65);
     render::Renderer renderer(scene);
     scene::View view;
