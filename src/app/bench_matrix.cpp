@@ -1,4 +1,5 @@
 #include "app/bench_matrix.hpp"
+#include "app/commit.hpp"
 
 #include "app/console.hpp"
 #include "app/dem_options.hpp"
@@ -83,7 +84,7 @@ std::pair<std::string, scene::Scene> named_scene(const std::string& word) {
 std::string program_mark() {
     std::error_code failed;
     const fs::path self = fs::read_symlink("/proc/self/exe", failed);
-    return text(TARN_COMMIT, " ", fs::file_size(self, failed), " ",
+    return text(built_commit(), " ", fs::file_size(self, failed), " ",
                 fs::last_write_time(self, failed).time_since_epoch().count());
 }
 
@@ -426,7 +427,7 @@ json measure_matrix(const MatrixWords& words) {
                                                           console_progress()));
     }
     end_progress();
-    bench::write_json(out, context.renderer(), TARN_COMMIT, results, table.str());
+    bench::write_json(out, context.renderer(), built_commit(), results, table.str());
     return json::parse(out.str());
 }
 

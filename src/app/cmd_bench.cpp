@@ -1,5 +1,6 @@
 #include "app/bench_matrix.hpp"
 #include "app/command.hpp"
+#include "app/commit.hpp"
 #include "app/console.hpp"
 #include "app/plot.hpp"
 #include "bench/adversary.hpp"
@@ -27,7 +28,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Words {
+struct BenchWords {
     MatrixWords matrix;
     std::string scene, size = "800x600", json_file, chart, pictures, report, against;
     std::vector<std::string> from;
@@ -36,7 +37,7 @@ struct Words {
     bool intersection = false, failures = false, size_given = false;
 };
 
-json measure(const Words& words) {
+json measure(const BenchWords& words) {
     bench::IntersectionOptions options;
     options.methods = words.methods;
     bench::PictureSize size;
@@ -85,7 +86,7 @@ json measure(const Words& words) {
     const auto results = bench::compare_methods(scene, name, views, options, console_progress());
     end_progress();
     std::ostringstream out;
-    bench::write_json(out, context.renderer(), TARN_COMMIT, results);
+    bench::write_json(out, context.renderer(), built_commit(), results);
     return json::parse(out.str());
 }
 
@@ -222,7 +223,7 @@ void draw_failure(const scene::Scene& field, const scene::WalkMethod& method,
 }
 
 /// Share of failures of each method for each class of ray, over fields made to break it.
-void print_failures(const Words& words) {
+void print_failures(const BenchWords& words) {
     const gpu::Context context;
     const auto fields = bench::adversarial_fields();
     const Progress progress = console_progress();
@@ -274,7 +275,7 @@ void print_failures(const Words& words) {
     end_progress();
 }
 
-int run_matrix(const Words& words) {
+int run_matrix(const BenchWords& words) {
     if (!words.report.empty())
         check_plot("chart.png");
     json against;
@@ -297,7 +298,7 @@ int run_matrix(const Words& words) {
     return 0;
 }
 
-int run_bench(Words words) {
+int run_bench(BenchWords words) {
     // Whatever cannot be written is told before minutes of work.
     for (const std::string& output :
          {words.json_file, words.chart, words.pictures.empty() ? "" : words.pictures + "/x"}) {
@@ -344,7 +345,7 @@ int run_bench(Words words) {
 } // namespace
 
 void add_bench(CLI::App& app, Run& run) {
-    auto words = std::make_shared<Words>();
+    auto words = std::make_shared<BenchWords>();
     CLI::App* c = app.add_subcommand("bench", "speed against accuracy: table, JSON, chart");
     MatrixWords& m = words->matrix;
     CLI::Option* scene =

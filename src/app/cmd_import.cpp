@@ -26,14 +26,14 @@ namespace tarn::app {
 
 namespace {
 
-struct Words {
+struct ImportWords {
     DemWords dem;
     ViewWords waves; ///< only its waves and its water are asked for
     std::string level = "auto", lakes = "all", bathymetry, soundings, ortho, scene;
     std::string bathymetry_kind = "auto", bed = "auto";
 };
 
-void read_words(Words& words) {
+void read_words(ImportWords& words) {
     read_dem_words(words.dem);
     dem::ImportOptions& options = words.dem.options;
     if (words.level != "auto")
@@ -54,7 +54,7 @@ void read_words(Words& words) {
     options.validate();
 }
 
-int run_import(Words& words) {
+int run_import(ImportWords& words) {
     read_words(words);
     dem::ImportOptions& options = words.dem.options;
     scene_files::StagedFolder folder(words.scene); // refuses before any work is done
@@ -115,7 +115,7 @@ int run_import(Words& words) {
 
 void import_for_viewing(const std::string& dem, const std::string& scene,
                         std::optional<double> level_m) {
-    Words words;
+    ImportWords words;
     if (level_m)
         words.level = text(*level_m);
     words.dem.dems = {dem};
@@ -124,7 +124,7 @@ void import_for_viewing(const std::string& dem, const std::string& scene,
 }
 
 void add_import(CLI::App& app, Run& run) {
-    auto words = std::make_shared<Words>();
+    auto words = std::make_shared<ImportWords>();
     dem::ImportOptions& options = words->dem.options;
     CLI::App* c = app.add_subcommand("import", "elevation tiles + water level -> scene folder");
     add_dem_options(*c, words->dem);

@@ -25,14 +25,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Words {
+struct RecordWords {
     ViewWords view;
     PictureWords picture;
     std::string scene, output, path, track, video;
     double seconds = 20.0, frames_per_s = 25.0, above_m = 30.0;
 };
 
-std::vector<scene::Camera> plan(const Words& words, scene::Scene& scene, int frames) {
+std::vector<scene::Camera> plan(const RecordWords& words, scene::Scene& scene, int frames) {
     if (words.track.empty() == words.path.empty())
         throw Error("give a way with --path or --track, one of them",
                     "--path overview/shore/dive, say");
@@ -61,7 +61,7 @@ std::vector<scene::Camera> plan(const Words& words, scene::Scene& scene, int fra
 std::string frame_name(int index) { return "frame_" + numbered(index + 1, 5) + ".png"; }
 
 /// Each picture's exposure, found in small ones and smoothed over half a second: no flicker.
-std::vector<double> exposures(const Words& words, const std::vector<scene::Camera>& way,
+std::vector<double> exposures(const RecordWords& words, const std::vector<scene::Camera>& way,
                               const scene::Scene& scene, scene::View view,
                               render::Renderer& renderer, const Progress& progress) {
     std::vector<double> raw;
@@ -96,7 +96,7 @@ std::vector<double> exposures(const Words& words, const std::vector<scene::Camer
 }
 
 /// Draws those pictures of the way that are missing.
-void draw(const Words& words, const scene_files::OptionList& options,
+void draw(const RecordWords& words, const scene_files::OptionList& options,
           const std::vector<scene::Camera>& way, const std::vector<int>& missing,
           const scene::Scene& scene, scene::View view) {
     const gpu::Context context;
@@ -134,7 +134,7 @@ void draw(const Words& words, const scene_files::OptionList& options,
     end_progress();
 }
 
-int run_record(const Words& words, const scene_files::OptionList& options) {
+int run_record(const RecordWords& words, const scene_files::OptionList& options) {
     if (!(words.seconds > 0.0 && words.seconds <= 36'000.0))
         throw Error(text("--seconds is ", words.seconds, ", must be in (0, 36000]"));
     if (!(words.frames_per_s >= 0.1 && words.frames_per_s <= 240.0))
@@ -200,7 +200,7 @@ int run_record(const Words& words, const scene_files::OptionList& options) {
 } // namespace
 
 void add_record(CLI::App& app, Run& run) {
-    auto words = std::make_shared<Words>();
+    auto words = std::make_shared<RecordWords>();
     CLI::App* c =
         app.add_subcommand("record", "a camera's way as numbered pictures, and as a video");
     c->add_option("SCENE", words->scene, "scene folder")->required();

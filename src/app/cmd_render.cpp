@@ -25,7 +25,7 @@ namespace tarn::app {
 
 namespace {
 
-struct Words {
+struct RenderWords {
     ViewWords view;
     PictureWords picture;
     PlanWords plan;
@@ -72,7 +72,7 @@ void draw_strips(render::Renderer& renderer, scene::View view, int rows,
     }
 }
 
-int run_render(Words& words, scene_files::OptionList options) {
+int run_render(RenderWords& words, scene_files::OptionList options) {
     check_outputs(words.outputs);
     if (!words.error_map.empty()) {
         check_outputs({words.error_map});
@@ -196,7 +196,7 @@ int run_render(Words& words, scene_files::OptionList options) {
 } // namespace
 
 void add_render(CLI::App& app, Run& run) {
-    auto words = std::make_shared<Words>();
+    auto words = std::make_shared<RenderWords>();
     CLI::App* c =
         app.add_subcommand("render", "one picture of a scene (.png, .exr), no display needed");
     c->add_option("SCENE", words->scene, "scene folder")->required();

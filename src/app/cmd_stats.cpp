@@ -22,7 +22,7 @@ namespace tarn::app {
 
 namespace {
 
-struct Words {
+struct StatsWords {
     std::string scene, levels, output, plot;
     int lake = 1, neighbours = 8;
     bool json = false;
@@ -43,7 +43,7 @@ std::string csv(const dem::StageTable& table) {
     return out;
 }
 
-int run_stats(const Words& words) {
+int run_stats(const StatsWords& words) {
     const std::vector<double> levels = parse_levels(words.levels);
     const scene::Scene scene = scene_files::load(words.scene);
     const auto lake = std::find_if(scene.lakes.begin(), scene.lakes.end(),
@@ -119,7 +119,7 @@ int run_stats(const Words& words) {
 } // namespace
 
 void add_stats(CLI::App& app, Run& run) {
-    auto words = std::make_shared<Words>();
+    auto words = std::make_shared<StatsWords>();
     CLI::App* c = app.add_subcommand("stats", "level, area and volume of a lake: table and plot");
     c->add_option("SCENE", words->scene, "scene folder")->required();
     c->add_option("--levels", words->levels, "FROM:TO:STEP, or a list with commas [m]")->required();

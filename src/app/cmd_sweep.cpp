@@ -35,7 +35,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Words {
+struct SweepWords {
     ViewWords view;
     PictureWords picture;
     PlanWords plan;
@@ -72,7 +72,7 @@ std::string file_word(const std::string& word) {
     return out;
 }
 
-Plan make_plan(const Words& words) {
+Plan make_plan(const SweepWords& words) {
     Plan plan;
     plan.levels_m = parse_levels(words.levels);
     for (const std::string& one : split(words.cameras, '/')) {
@@ -113,7 +113,7 @@ Plan make_plan(const Words& words) {
 }
 
 /// The words of one picture.
-ViewWords words_of(const Words& words, const Plan& plan, const Job& job) {
+ViewWords words_of(const SweepWords& words, const Plan& plan, const Job& job) {
     ViewWords out = words.view;
     out.level_m = plan.levels_m[job.level];
     out.camera = plan.cameras[job.camera].words;
@@ -121,8 +121,8 @@ ViewWords words_of(const Words& words, const Plan& plan, const Job& job) {
     return out;
 }
 
-scene_files::OptionList options_of(const scene_files::OptionList& common, const Plan& plan,
-                                   const Job& job) {
+scene_files::OptionList options_for(const scene_files::OptionList& common, const Plan& plan,
+                                    const Job& job) {
     scene_files::OptionList out = common;
     out.emplace_back("level", text(plan.levels_m[job.level]));
     out.emplace_back("camera", plan.cameras[job.camera].words);
@@ -133,7 +133,7 @@ scene_files::OptionList options_of(const scene_files::OptionList& common, const 
 
 class Sweep {
 public:
-    Sweep(const Words& words, const scene_files::OptionList& common)
+    Sweep(const SweepWords& words, const scene_files::OptionList& common)
         : words_(words), common_(common), plan_(make_plan(words)),
           scene_(scene_files::load(words.scene)), identity_(scene_files::identity(words.scene)) {
         layers_ = read_layers(words.view, scene_.frame);
@@ -146,7 +146,7 @@ public:
         return fs::path(words_.output) / (job.name + "." + words_.extension);
     }
     std::string command(const Job& job) const {
-        return command_of("render", words_.scene, options_of(common_, plan_, job)) + " -o " +
+        return command_of("render", words_.scene, options_for(common_, plan_, job)) + " -o " +
                file(job).string();
     }
 
@@ -188,7 +188,7 @@ private:
     double exposure_for(const Job& job, const scene::Scene& scene, const scene::View& view,
                         const Image& picture);
 
-    const Words& words_;
+    const SweepWords& words_;
     const scene_files::OptionList& common_;
     Plan plan_;
     scene::Scene scene_; ///< as imported
@@ -258,7 +258,7 @@ int Sweep::draw(const std::vector<Job>& jobs) {
             scene::View view = make_view(words, scene);
             if (!renderer)
                 renderer = std::make_unique<render::Renderer>(scene);
-            scene_files::OptionList options = options_of(common_, plan_, job);
+            scene_files::OptionList options = options_for(common_, plan_, job);
             if (words_.plan.budget.asked()) { // each picture shows something else
                 const render::Plan plan =
                     render::make_plan(*renderer, scene, view, words_.plan.budget, {});
@@ -303,7 +303,7 @@ int Sweep::draw(const std::vector<Job>& jobs) {
 }
 
 /// Contact sheet: a row a level, highest first, a column a camera and time.
-void write_sheet(const Sweep& sweep, const Words& words, const fs::path& path) {
+void write_sheet(const Sweep& sweep, const SweepWords& words, const fs::path& path) {
     const Plan& plan = sweep.plan();
     const std::size_t columns = plan.cameras.size() * plan.times.size();
     std::vector<std::size_t> order(plan.levels_m.size());
@@ -352,7 +352,7 @@ void write_sheet(const Sweep& sweep, const Words& words, const fs::path& path) {
     image::write_png(path, sheet, {{"Software", text("tarn ", TARN_VERSION)}});
 }
 
-scene_files::Scenarios tabulate(Sweep& sweep, const Words& words) {
+scene_files::Scenarios tabulate(Sweep& sweep, const SweepWords& words) {
     const Plan& plan = sweep.plan();
     const dem::Refill& refill = sweep.refill();
     const scene::Scene& scene = sweep.scene();
@@ -391,7 +391,7 @@ scene_files::Scenarios tabulate(Sweep& sweep, const Words& words) {
     return out;
 }
 
-void write_differences(Sweep& sweep, const Words& words) {
+void write_differences(Sweep& sweep, const SweepWords& words) {
     for (const std::string& difference : words.differences) {
         std::string commas = difference;
         std::replace(commas.begin(), commas.end(), ':', ',');
@@ -407,7 +407,7 @@ void write_differences(Sweep& sweep, const Words& words) {
 }
 
 /// Shares the jobs out between processes, each with a context of its own.
-int draw_in_processes(Sweep& sweep, const Words& words) {
+int draw_in_processes(Sweep& sweep, const SweepWords& words) {
     const std::vector<Job>& jobs = sweep.plan().jobs;
     const int processes = std::clamp(words.processes, 1, int(jobs.size()));
     if (processes == 1)
@@ -450,7 +450,7 @@ int draw_in_processes(Sweep& sweep, const Words& words) {
     return missing;
 }
 
-int run_sweep(Words& words, const scene_files::OptionList& common) {
+int run_sweep(SweepWords& words, const scene_files::OptionList& common) {
     if (words.view.level_m || words.view.camera != "overview")
         throw Error("tarn sweep takes --levels and --cameras, not --level and --camera");
     if (!words.times.empty() && !words.view.time.empty())
@@ -507,7 +507,7 @@ int run_sweep(Words& words, const scene_files::OptionList& common) {
 } // namespace
 
 void add_sweep(CLI::App& app, Run& run) {
-    auto words = std::make_shared<Words>();
+    auto words = std::make_shared<SweepWords>();
     CLI::App* c = app.add_subcommand(
         "sweep", "pictures of water-level scenarios with their figures and a contact sheet");
     c->add_option("SCENE", words->scene, "scene folder")->required();

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Words {
+struct WindowWords {
     ViewWords view;
     PictureWords picture;
     PlanWords plan;
@@ -130,7 +130,7 @@ view::Planned planned_of(const render::Plan& plan) {
 
 /// @param import  command that makes the scene, where it is a temporary one
 view::Services services_for(const std::string& folder, const scene::Scene& as_imported,
-                            const Words& words, const std::string& import) {
+                            const WindowWords& words, const std::string& import) {
     // In commands and sidecars a temporary scene has the name that `import` gives it.
     const std::string named = import.empty() ? folder : "scene";
     const std::string first = import.empty() ? "" : import + " && ";
@@ -227,7 +227,7 @@ private:
 
 /// Chooses what the window begins with, for its first view; panels and options change it from
 /// there.
-view::Planned plan_start(const Words& words, const scene::Scene& scene, int width_px,
+view::Planned plan_start(const WindowWords& words, const scene::Scene& scene, int width_px,
                          int height_px) {
     const gpu::Context context;
     scene::Scene shown = scene;
@@ -246,7 +246,7 @@ view::Planned plan_start(const Words& words, const scene::Scene& scene, int widt
     return planned_of(plan);
 }
 
-int run_view(const Words& words, view::Options options) {
+int run_view(const WindowWords& words, view::Options options) {
     const auto started = std::chrono::steady_clock::now();
     std::optional<std::string> next = words.scene;
     std::string shown, message;
@@ -318,7 +318,7 @@ int run_view(const Words& words, view::Options options) {
 } // namespace
 
 void add_view(CLI::App& app, Run& run) {
-    auto words = std::make_shared<Words>();
+    auto words = std::make_shared<WindowWords>();
     CLI::App* c = app.add_subcommand("view", "the window: fly, dive, move the level, measure");
     c->add_option("SCENE", words->scene,
                   "scene folder; a DEM file is imported for the time being, with its level found")

@@ -18,7 +18,7 @@ namespace tarn::app {
 
 namespace {
 
-struct Words {
+struct WavesWords {
     ViewWords view;
     std::string scene;
     bool json = false;
@@ -57,7 +57,7 @@ void print_lake(const scene_files::LakeWaves& lake) {
               << "\n";
 }
 
-int run_waves(Words& words) {
+int run_waves(WavesWords& words) {
     const scene::Scene scene = scene_files::load(words.scene);
     waves::Settings settings = make_waves(words.view, scene);
     if (settings.model == waves::Model::calm && !words.view.waves)
@@ -139,7 +139,7 @@ int run_waves(Words& words) {
 } // namespace
 
 void add_waves(CLI::App& app, Run& run) {
-    auto words = std::make_shared<Words>();
+    auto words = std::make_shared<WavesWords>();
     CLI::App* c =
         app.add_subcommand("waves", "heights, periods and slopes of the waves that a wind raises");
     c->add_option("SCENE", words->scene, "scene folder")->required();

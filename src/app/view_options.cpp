@@ -2,6 +2,7 @@
 
 #include "app/console.hpp"
 #include "app/layers.hpp"
+#include "core/angles.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
 #include "geo/frame.hpp"
@@ -25,8 +26,6 @@
 namespace tarn::app {
 
 namespace {
-
-constexpr double degree = 3.14159265358979323846 / 180.0;
 
 glm::dvec3 towards(double azimuth_deg, double elevation_deg) {
     const double a = azimuth_deg * degree, e = elevation_deg * degree;

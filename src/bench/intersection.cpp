@@ -1,6 +1,7 @@
 #include "bench/intersection.hpp"
 
 #include "bench/matrix.hpp"
+#include "core/angles.hpp"
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
@@ -17,8 +18,6 @@
 namespace tarn::bench {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// A method with one of its settings.
 struct Candidate {

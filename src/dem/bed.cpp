@@ -15,7 +15,7 @@ namespace tarn::dem {
 
 namespace {
 
-constexpr float none = std::numeric_limits<float>::quiet_NaN();
+constexpr float no_depth = std::numeric_limits<float>::quiet_NaN();
 
 template <class Visit>
 void each_in(const Box& box, Visit visit) {
@@ -75,7 +75,7 @@ Merged merge_bathymetry(Grid<float>& z, const BedPlace& place, const Grid<float>
     // Everything below is depth, positive down.
     const bool negative = kind == BathymetryKind::depth && median(inside) < 0.0;
     const auto surface_m = float(place.surface_m);
-    Grid<float> depth(place.size(), none);
+    Grid<float> depth(place.size(), no_depth);
     Grid<unsigned char> survey(place.size());
     std::size_t surveyed = 0, total = 0, above = 0;
     each_in(box, [&](Node n) {
@@ -174,7 +174,7 @@ Grid<float> grid_soundings(const BedPlace& place, std::span<const Sounding> soun
                 v.push_back(value_at_shore);
             }
     });
-    Grid<float> out(size, none);
+    Grid<float> out(size, no_depth);
     if (sums.empty() || x.size() < 3)
         return out;
     GdalMessages messages;

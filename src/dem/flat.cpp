@@ -23,13 +23,13 @@ constexpr double most_lower_share = 0.35;
 // hundred nodes have 31 % or more, of sixty some 12 %.
 constexpr double least_interior_share = 0.1;
 
-constexpr float none = std::numeric_limits<float>::quiet_NaN();
+constexpr float no_height = std::numeric_limits<float>::quiet_NaN();
 
 } // namespace
 
 FlatFinder::FlatFinder(int cols)
-    : cols_(cols), above_(std::size_t(cols), none), here_(std::size_t(cols), none),
-      below_(std::size_t(cols), none), candidate_(std::size_t(cols)) {}
+    : cols_(cols), above_(std::size_t(cols), no_height), here_(std::size_t(cols), no_height),
+      below_(std::size_t(cols), no_height), candidate_(std::size_t(cols)) {}
 
 int FlatFinder::root(int surface) {
     while (parent_[std::size_t(surface)] != surface) {
@@ -123,8 +123,8 @@ void FlatFinder::close_row() {
             s.lower += z < level;
             s.higher += z > level;
         };
-        meet(c > 0 ? h[c - 1] : none);
-        meet(last + 1 < cols_ ? h[last + 1] : none);
+        meet(c > 0 ? h[c - 1] : no_height);
+        meet(last + 1 < cols_ ? h[last + 1] : no_height);
         for (int k = c; k <= last; ++k) {
             meet(a[k]);
             meet(b[k]);
@@ -182,7 +182,8 @@ void FlatFinder::offer(Open&& surface) {
 
 std::vector<FlatSurface> FlatFinder::finish() {
     if (any_) {
-        add_row(std::vector<float>(std::size_t(cols_), none)); // the last row has no land below it
+        add_row(
+            std::vector<float>(std::size_t(cols_), no_height)); // the last row has no land below it
         for (std::size_t i = 0; i < open_.size(); ++i)
             offer(std::move(open_[i]));
     }

@@ -15,7 +15,7 @@ namespace tarn::dem {
 
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 std::string lower(std::string word) {
     std::transform(word.begin(), word.end(), word.begin(),
@@ -50,13 +50,13 @@ std::string field_names(OGRFeatureDefn& layout) {
 /// The number in an attribute, NaN if it holds none.
 double number(const OGRFeature& feature, int field) {
     if (!feature.IsFieldSetAndNotNull(field))
-        return none;
+        return no_value;
     const char* words = feature.GetFieldAsString(field);
     char* end = nullptr;
     const double value = std::strtod(words, &end);
     while (end && (*end == ' ' || *end == '\t'))
         ++end;
-    return end != words && end && *end == '\0' && std::isfinite(value) ? value : none;
+    return end != words && end && *end == '\0' && std::isfinite(value) ? value : no_value;
 }
 
 struct Reading {
@@ -161,7 +161,7 @@ SoundingFile read_soundings(const std::filesystem::path& path, const SoundingOpt
     for (const auto& feature : layer) {
         ++features;
         const OGRGeometry* shape = feature->GetGeometryRef();
-        const double value = depth_field >= 0 ? number(*feature, depth_field) : none;
+        const double value = depth_field >= 0 ? number(*feature, depth_field) : no_value;
         const std::size_t before = readings.size();
         if (shape && (depth_field < 0 || !std::isnan(value)))
             collect(*shape, value, step, readings);

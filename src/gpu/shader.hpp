@@ -36,6 +36,9 @@ ShaderSource expand_shader(const std::filesystem::path& root, const std::string&
 /// there.
 std::string name_files(const std::string& driver_log, const ShaderSource& source);
 
+/// Workgroups that cover so many items, that many in each.
+constexpr GLuint groups(int items, int of = 8) { return GLuint((items + of - 1) / of); }
+
 class ComputeProgram {
 public:
     ComputeProgram() = default;

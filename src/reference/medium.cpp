@@ -1,5 +1,6 @@
 #include "reference/medium.hpp"
 
+#include "core/angles.hpp"
 #include "reference/fresnel.hpp"
 #include "scene/forward_glow.hpp"
 #include "scene/water_colour.hpp"
@@ -10,10 +11,6 @@
 #include <glm/geometric.hpp>
 
 namespace tarn::reference {
-
-namespace {
-constexpr double pi = 3.14159265358979323846;
-} // namespace
 
 Medium::Medium(const scene::WaterOptics& optics, bool spectral) : index_(optics.index) {
     const auto sum_over = [&](double step_nm) {
@@ -94,6 +91,15 @@ glm::dvec3 Medium::path_radiance(double slant, double depth_m, double sink, doub
     return sum;
 }
 
+glm::dvec3 Medium::scattered_beyond(double path_m) const {
+    glm::dvec3 sum(0.0);
+    for (const Wave& wave : waves_)
+        if (wave.attenuation_per_m > 0.0) // else nothing is scattered either
+            sum += wave.weight * (wave.backscattering_per_m / (2.0 * pi * wave.attenuation_per_m) *
+                                  std::exp(-wave.attenuation_per_m * path_m));
+    return sum;
+}
+
 glm::dvec3 Medium::glow_radiance(double slant, double depth_m, double sink, double before_m,
                                  double distance_m, double angle_rad) const {
     const double rate = 1.0 + slant * sink, start = slant * depth_m + before_m;
@@ -120,7 +126,7 @@ glm::dvec3 Medium::glow_radiance(double slant, double depth_m, double sink, doub
                          x = c * std::abs(gain);
             const double shortest = std::max(start + rate * from + std::min(gain, 0.0), 0.0);
             const bool short_one = x < 0.02; // to 1e-5
-            const double lost = -std::expm1(-x);
+            const double lost = short_one ? x : -std::expm1(-x);
             const double mean = short_one ? 1.0 - 0.5 * x : lost / x;
             const double place = short_one ? 0.5 - x / 12.0 : 1.0 / x - (1.0 - lost) / lost;
             const double tau = wave.forward_per_m * (shortest + place * std::abs(gain));

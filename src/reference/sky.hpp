@@ -1,5 +1,6 @@
 #pragma once
 /// @file sky.hpp  Double-precision twin of shaders/lib/sky.glsl, with azimuths by atan2.
+#include "core/angles.hpp"
 #include "scene/lighting.hpp"
 
 #include <algorithm>
@@ -12,7 +13,6 @@ namespace tarn::reference {
 
 /// Same contract as the GLSL function of the same name.
 inline glm::dvec2 sky_place(glm::dvec3 direction, glm::dvec3 sun, bool whole_turn = false) {
-    constexpr double pi = 3.14159265358979323846;
     const double flat = std::hypot(direction.x, direction.y);
     const double elevation = std::max(0.0, std::atan2(direction.z, flat));
     if (whole_turn) {

@@ -1,5 +1,6 @@
 #include "reference/tracer.hpp"
 
+#include "core/angles.hpp"
 #include "core/error.hpp"
 #include "reference/air.hpp"
 #include "reference/camera.hpp"
@@ -28,7 +29,6 @@ namespace tarn::reference {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Skylight in the water, as in docs/physics/water.md: mean slant after refraction of an even sky.
@@ -813,23 +813,39 @@ private:
         const bool shafts = tiles_ && settings_.shaft_steps > 0;
         const double off_beam = std::atan2(glm::length(glm::cross(direction, sun_below_)),
                                            glm::dot(direction, sun_below_));
+        const auto deep_at = [&](double t) { return std::max(depth + sink * t, 0.0); };
+        const auto even = [&](double from, double to) {
+            return medium_.path_radiance(slant, deep_at(from), sink, before_m + from, to - from);
+        };
+        const auto glow = [&](double from, double to) {
+            return settings_.forward_glow
+                       ? medium_.glow_radiance(slant, deep_at(from), sink, before_m + from,
+                                               to - from, off_beam)
+                       : glm::dvec3(0.0);
+        };
         const auto between = [&](double from, double to) {
-            const double deep = std::max(depth + sink * from, 0.0);
-            glm::dvec3 out = medium_.path_radiance(slant, deep, sink, before_m + from, to - from);
-            if (settings_.forward_glow)
-                out +=
-                    medium_.glow_radiance(slant, deep, sink, before_m + from, to - from, off_beam);
-            return out;
+            return even(from, to) + glow(from, to);
         };
         if (!(shafts || settings_.shadows) || !(length > 0.0))
             return between(0.0, length);
         const int pieces = shafts ? 96 : 24; // each longer than the one before it
         glm::dvec3 sum(0.0);
         double lit_from = 0.0; // pieces in the sun, side by side, are one
+        // Of thin pieces side by side each end is summed once, where the light's path grows along
+        // the way.
+        const double rate = 1.0 + slant * sink;
+        const bool by_ends = shafts && std::abs(rate) > 1e-3 && depth + sink * length >= 0.0;
+        const auto beyond = [&](double t) {
+            return medium_.scattered_beyond(slant * deep_at(t) + before_m + t);
+        };
+        glm::dvec3 beyond_from = by_ends ? beyond(0.0) : glm::dvec3(0.0);
         for (int k = 0; k < pieces; ++k) {
             const double from = length * std::pow(double(k) / pieces, 2.0),
                          to = length * std::pow((k + 1.0) / pieces, 2.0), t = 0.5 * (from + to);
-            const double deep = std::max(depth + sink * t, 0.0), way = slant * deep + before_m + t;
+            const double deep = deep_at(t), way = slant * deep + before_m + t;
+            const glm::dvec3 beyond_to = by_ends ? beyond(to) : glm::dvec3(0.0),
+                             piece = (beyond_from - beyond_to) / rate;
+            beyond_from = beyond_to;
             const glm::dvec3 enters = origin + t * direction + deep / sun_below_.z * sun_below_;
             if (settings_.shadows &&
                 (blocked(enters + glm::dvec3(0, 0, lift_m_), light_.sun_direction, infinity) ||
@@ -841,7 +857,7 @@ private:
             }
             if (!shafts)
                 continue;
-            sum += between(from, to) *
+            sum += ((by_ends ? piece : even(from, to)) + glow(from, to)) *
                    (1.0 + (focus_at(origin + t * direction, deep, 1) - 1.0) * beam_share(way));
         }
         if (!shafts && length > lit_from)

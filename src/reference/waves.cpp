@@ -1,5 +1,6 @@
 #include "reference/waves.hpp"
 
+#include "core/angles.hpp"
 #include "reference/fft.hpp"
 
 #include <algorithm>
@@ -8,8 +9,6 @@
 namespace tarn::reference {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Weights of the cubic through four neighbours (Catmull & Rom), t in [0, 1) behind the second.
 std::array<double, 4> cubic_weights(double t) {

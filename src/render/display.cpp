@@ -8,8 +8,6 @@ namespace tarn::render {
 
 namespace {
 
-GLuint groups(int items) { return static_cast<GLuint>((items + 7) / 8); }
-
 gpu::ComputeProgram pass(const char* name) {
     return gpu::ComputeProgram(gpu::load_shader(gpu::shader_root(), name));
 }
@@ -26,7 +24,7 @@ std::vector<glm::vec3> Display::meter(const gpu::Texture2D& radiance) const {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TARN_BUFFER_METER, metered_.id());
     meter_.use();
     glUniform2i(0, across, down);
-    glDispatchCompute(groups(across), groups(down), 1);
+    glDispatchCompute(gpu::groups(across), gpu::groups(down), 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     std::vector<glm::vec4> places(std::size_t(across * down));
     glGetNamedBufferSubData(metered_.id(), 0, GLsizeiptr(places.size() * sizeof places[0]),
@@ -43,7 +41,7 @@ void Display::show(const gpu::Texture2D& radiance, double exposure, double share
     screen_.bind_image(TARN_IMAGE_SCREEN, GL_WRITE_ONLY);
     display_.use();
     glUniform2f(0, float(exposure), float(share));
-    glDispatchCompute(groups(screen_.width_px()), groups(screen_.height_px()), 1);
+    glDispatchCompute(gpu::groups(screen_.width_px()), gpu::groups(screen_.height_px()), 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
     gpu::check_gl("showing the picture");
 }

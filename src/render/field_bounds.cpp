@@ -10,8 +10,6 @@ namespace tarn::render {
 
 namespace {
 
-GLuint groups(int items) { return static_cast<GLuint>((items + 7) / 8); }
-
 int next_power_of_two(int n) {
     int p = 1;
     while (p < n)
@@ -120,14 +118,14 @@ void FieldBounds::build_maxima() {
     maxima_.bind(TARN_TEXTURE_BOUNDS);
     block_maxima_.use();
     maxima_.bind_image(TARN_IMAGE_MAXIMA, GL_WRITE_ONLY, 0);
-    glDispatchCompute(groups(w), groups(h), 1);
+    glDispatchCompute(gpu::groups(w), gpu::groups(h), 1);
     reduce_maxima_.use();
     for (int level = 0; level + 1 < levels; ++level) {
         glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
         maxima_.bind_image(TARN_IMAGE_MAXIMA, GL_WRITE_ONLY, level + 1);
         glUniform1i(0, level);
-        glDispatchCompute(groups(std::max(1, w >> (level + 1))),
-                          groups(std::max(1, h >> (level + 1))), 1);
+        glDispatchCompute(gpu::groups(std::max(1, w >> (level + 1))),
+                          gpu::groups(std::max(1, h >> (level + 1))), 1);
     }
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     gpu::check_gl("building the block maxima");

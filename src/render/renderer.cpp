@@ -15,8 +15,6 @@ namespace tarn::render {
 
 namespace {
 
-GLuint groups(int items) { return static_cast<GLuint>((items + 7) / 8); }
-
 /// Pixels of a tile at most: what the passes hand to each other takes 48 bytes a pixel.
 constexpr int tile_pixels = 1 << 22;
 
@@ -474,7 +472,7 @@ void Renderer::draw_tile() {
 
 void Renderer::draw_medium() {
     view_buffer_.write(&block_, sizeof block_);
-    const GLuint across = groups(block_.tile.z), down = groups(block_.tile.w);
+    const GLuint across = gpu::groups(block_.tile.z), down = gpu::groups(block_.tile.w);
     constexpr GLbitfield images = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
     const bool split = (block_.counts.z & (TARN_FLAG_REFLECTION | TARN_FLAG_REFRACTION)) != 0;
     glMemoryBarrier(images);
@@ -563,7 +561,7 @@ void Renderer::find_first_hits() {
     find_beams();
     const WalkPasses& pass = *calm_walk_;
     pass.first_hit.use();
-    glDispatchCompute(groups(int(block_.counts.x)), groups(int(block_.counts.y)), 1);
+    glDispatchCompute(gpu::groups(int(block_.counts.x)), gpu::groups(int(block_.counts.y)), 1);
 }
 
 std::vector<FieldHit> Renderer::trace_rays(std::span<const FieldRay> rays, scene::Walk walk,

@@ -13,10 +13,6 @@
 
 namespace tarn::render {
 
-namespace {
-GLuint groups(int items, int of) { return static_cast<GLuint>((items + of - 1) / of); }
-} // namespace
-
 Ripples::Ripples(const RipplePond& pond)
     : pond_(pond), step_s_(waves::ripple_courant * pond.texel_m / pond.speed_m_per_s) {
     if (pond.texels < waves::drop_cell_texels || pond.texels % waves::drop_cell_texels != 0 ||
@@ -91,7 +87,7 @@ void Ripples::step() {
     poke_.reset();
     at_rest_ = false;
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    glDispatchCompute(groups(pond_.texels, 16), groups(pond_.texels, 8), 1);
+    glDispatchCompute(gpu::groups(pond_.texels, 16), gpu::groups(pond_.texels, 8), 1);
     // The state that was written is now; now was before.
     std::swap(states_[1], states_[2]);
     std::swap(states_[0], states_[1]);
@@ -132,7 +128,7 @@ void Ripples::write_layer(const gpu::TextureLayers& heights, const gpu::TextureL
     glUniform1f(2, float(1.0 / pond_.texel_m));
     glUniform1f(3, float(bound_m));
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    glDispatchCompute(groups(pond_.texels, 16), groups(pond_.texels, 8), 1);
+    glDispatchCompute(gpu::groups(pond_.texels, 16), gpu::groups(pond_.texels, 8), 1);
 }
 
 std::vector<float> Ripples::read(bool before) const {

@@ -1,5 +1,6 @@
 #include "render/sunlight.hpp"
 
+#include "core/angles.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
 #include "gpu/context.hpp"
@@ -13,7 +14,6 @@ namespace tarn::render {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 /// Slices lie from a part of the depth where waves focus, by their curvature, to so many times it.
 constexpr double shallowest_of_focus = 1.0 / 8.0, deepest_of_focus = 16.0;
 
@@ -25,8 +25,6 @@ glm::dvec2 lean(glm::dvec3 sun, glm::dvec2 slope, double index) {
     const glm::dvec3 down = along - std::sqrt(1.0 - glm::dot(along, along)) * normal;
     return glm::dvec2(down.x, down.y) / -down.z;
 }
-
-GLuint groups_of_8(int items) { return GLuint((items + 7) / 8); }
 
 } // namespace
 
@@ -151,7 +149,7 @@ void SunlightVolume::update(const WaveField& waves) {
     glUniform4i(3, needed_.x, needed_.y, needed_.z, needed_.w);
     const GLuint groups = settings_.method == scene::Caustics::splat
                               ? GLuint(wave_texels_ * settings_.photons / 32)
-                              : groups_of_8(wave_texels_);
+                              : gpu::groups(wave_texels_);
     glDispatchCompute(groups, groups, GLuint(cascades_));
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     begins("sunlight tiles");
@@ -170,7 +168,7 @@ void SunlightVolume::update(const WaveField& waves) {
         glUniform1i(2, side);
         glUniform1i(3, settings_.slices);
         glUniform4i(4, needed_.x, needed_.y, needed_.z, needed_.w);
-        glDispatchCompute(groups_of_8(side), groups_of_8(side), GLuint(tiles_.layers()));
+        glDispatchCompute(gpu::groups(side), gpu::groups(side), GLuint(tiles_.layers()));
         glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
         source += made;
     }

@@ -1,5 +1,6 @@
 #include "render/waves.hpp"
 
+#include "core/angles.hpp"
 #include "core/text.hpp"
 #include "waves/ripples.hpp"
 
@@ -11,12 +12,9 @@ namespace tarn::render {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 /// Mip levels that passes/wave_surface.comp makes beside level 0.
 constexpr int surface_levels = 3;
 constexpr int table_rows = waves::most_cascades + 1;
-
-GLuint groups(int items, int of) { return static_cast<GLuint>((items + of - 1) / of); }
 
 /// Columns transformed side by side, so that memory is read in whole sectors; large ones must fit
 /// in shared memory (32 KB are guaranteed).
@@ -195,7 +193,7 @@ void WaveField::transform_spectra(const std::function<void(const char*)>& begins
         heights_.bind_image(GLuint(TARN_IMAGE_WAVE_HEIGHTS + level), GL_WRITE_ONLY, level);
         slopes_.bind_image(GLuint(TARN_IMAGE_WAVE_SLOPES + level), GL_WRITE_ONLY, level);
     }
-    glDispatchCompute(groups(n, 16), groups(n, 16), GLuint(count));
+    glDispatchCompute(gpu::groups(n, 16), gpu::groups(n, 16), GLuint(count));
 }
 
 void WaveField::make_levels(int source, int first_layer, int layers) {
@@ -209,7 +207,7 @@ void WaveField::make_levels(int source, int first_layer, int layers) {
     glUniform1i(0, source);
     glUniform1i(1, made);
     glUniform1i(3, first_layer);
-    const GLuint across = groups(std::max(heights_.side_px() >> source, 1), 16);
+    const GLuint across = gpu::groups(std::max(heights_.side_px() >> source, 1), 16);
     glDispatchCompute(across, across, GLuint(layers));
 }
 

@@ -1,5 +1,6 @@
 #include "scene/camera.hpp"
 
+#include "core/angles.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
 
@@ -7,10 +8,6 @@
 #include <glm/geometric.hpp>
 
 namespace tarn::scene {
-
-namespace {
-constexpr double degree = 3.14159265358979323846 / 180.0;
-}
 
 Camera look_along(glm::dvec3 position, glm::dvec3 direction, glm::dvec3 up, double fov_deg) {
     if (!(fov_deg > 0.0 && fov_deg <= 170.0))

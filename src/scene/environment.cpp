@@ -1,5 +1,6 @@
 #include "scene/environment.hpp"
 
+#include "core/angles.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
 
@@ -11,7 +12,6 @@ namespace tarn::scene {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double sun_reach_rad = 3.0 * pi / 180.0, sun_over_sky = 30.0;
 
 double luminance(glm::dvec3 c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }

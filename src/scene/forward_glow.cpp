@@ -1,5 +1,6 @@
 #include "scene/forward_glow.hpp"
 
+#include "core/angles.hpp"
 #include "scene/lighting.hpp"
 
 #include <algorithm>
@@ -8,8 +9,6 @@
 namespace tarn::scene {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Of natural water's particles: [1/sr], 1 over the sphere but for the rounding of its parameters.
 double fournier_forand(double theta) {

@@ -1,5 +1,7 @@
 #include "scene/lighting.hpp"
 
+#include "core/angles.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -10,7 +12,6 @@ namespace tarn::scene {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double wavelength_um[3] = {0.620, 0.545, 0.450};
 
 /// Relative optical air mass (Kasten & Young 1989); 1 at the zenith, 38 at the horizon.

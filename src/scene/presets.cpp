@@ -1,5 +1,6 @@
 #include "scene/presets.hpp"
 
+#include "core/angles.hpp"
 #include "core/error.hpp"
 
 #include <algorithm>
@@ -11,8 +12,6 @@
 namespace tarn::scene {
 
 namespace {
-
-constexpr double degree = 3.14159265358979323846 / 180.0;
 
 struct Place {
     glm::dvec2 centre;           ///< of the lake's bounding box

@@ -1,5 +1,6 @@
 #include "scene/water_colour.hpp"
 
+#include "core/angles.hpp"
 #include "scene/forward_glow.hpp"
 #include "scene/water_types.hpp"
 
@@ -9,8 +10,6 @@
 namespace tarn::scene {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// One wavelength, or one channel of three.
 struct Band {

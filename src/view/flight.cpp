@@ -1,5 +1,6 @@
 #include "view/flight.hpp"
 
+#include "core/angles.hpp"
 #include "scene/settings.hpp"
 
 #include <algorithm>
@@ -10,7 +11,6 @@ namespace tarn::view {
 
 namespace {
 
-constexpr double degree = 3.14159265358979323846 / 180.0;
 constexpr double clearance_m = 0.3;
 constexpr std::size_t most_remembered = 200;
 

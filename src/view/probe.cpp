@@ -1,5 +1,6 @@
 #include "view/probe.hpp"
 
+#include "core/angles.hpp"
 #include "core/text.hpp"
 #include "geo/frame.hpp"
 
@@ -8,10 +9,6 @@
 #include <glm/geometric.hpp>
 
 namespace tarn::view {
-
-namespace {
-constexpr double degree = 3.14159265358979323846 / 180.0;
-}
 
 std::optional<glm::dvec3> first_ground(const scene::Scene& scene, const glm::dvec3& origin,
                                        const glm::dvec3& direction, double most_m,

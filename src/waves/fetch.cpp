@@ -1,15 +1,12 @@
 #include "waves/fetch.hpp"
 
+#include "core/angles.hpp"
 #include "core/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace tarn::waves {
-
-namespace {
-constexpr double degree = 3.14159265358979323846 / 180.0;
-}
 
 WaterMask water_mask(const Heightfield& ground, const Heightfield& water, int most) {
     const GridSize nodes = ground.size();

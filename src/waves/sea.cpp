@@ -1,5 +1,6 @@
 #include "waves/sea.hpp"
 
+#include "core/angles.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "waves/ripples.hpp"
@@ -13,7 +14,6 @@ namespace tarn::waves {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double deep_m = 1e4;
 /// Heights beyond this many standard deviations are held back: once in 5e8.
 constexpr double bound_sigmas = 6.0;

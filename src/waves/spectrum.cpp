@@ -1,13 +1,13 @@
 #include "waves/spectrum.hpp"
 
+#include "core/angles.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace tarn::waves {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 double sech(double x) { return 1.0 / std::cosh(std::min(x, 300.0)); }
 

@@ -13,6 +13,7 @@
 #include "render/renderer.hpp"
 #include "scene/samples.hpp"
 #include "scene/water_types.hpp"
+#include "support/gpu_function.hpp"
 #include "waves/sea.hpp"
 
 #include <algorithm>
@@ -28,10 +29,7 @@ using namespace tarn;
 
 namespace {
 
-const gpu::Context& context() {
-    static const gpu::Context one;
-    return one;
-}
+using test_support::context;
 
 struct Pair {
     Image wrong, right;

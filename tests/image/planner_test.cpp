@@ -6,6 +6,7 @@
 #include "reference/tracer.hpp"
 #include "render/planner.hpp"
 #include "scene/samples.hpp"
+#include "support/gpu_function.hpp"
 
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -16,10 +17,7 @@ using namespace tarn;
 
 namespace {
 
-const gpu::Context& context() {
-    static const gpu::Context one;
-    return one;
-}
+using test_support::context;
 
 scene::View view_of(const scene::Scene& scene, const std::string& name, double wind_m_per_s) {
     scene::View view;

@@ -1,4 +1,5 @@
 // The glow around the sun seen from below, against photons that are scattered one by one.
+#include "core/angles.hpp"
 #include "reference/medium.hpp"
 #include "scene/forward_glow.hpp"
 
@@ -12,8 +13,6 @@ using namespace tarn;
 using namespace tarn::scene;
 
 namespace {
-
-constexpr double degree = M_PI / 180.0;
 
 /// Draws angles by the phase function alone.
 class Scatterer {

@@ -39,11 +39,11 @@ public:
     bool shore_counted = false;
 };
 
-struct Desk {
+struct Seat {
     scene::Scene scene = scene::bowl(129);
     view::Services services;
     int kept = 0;
-    Desk() {
+    Seat() {
         scene.frame = geo::local_frame({46.0, 8.0});
         services.make_view = [this](const Options& options, scene::Scene& s) {
             if (options.count("wind") && options.at("wind") == "much")
@@ -88,8 +88,8 @@ void wait_for_levels(Session& session) {
 } // namespace
 
 TEST(Session, WhatCannotBeChangesNothing) {
-    Desk desk;
-    Session session(desk.scene, desk.services, {});
+    Seat seat;
+    Session session(seat.scene, seat.services, {});
     EXPECT_TRUE(session.set("wind", "5"));
     EXPECT_FALSE(session.set("wind", "much"));
     EXPECT_EQ(session.option("wind"), "5");
@@ -102,8 +102,8 @@ TEST(Session, WhatCannotBeChangesNothing) {
 
 // A plan's options are taken back with it; what somebody changes meanwhile is theirs, and stays.
 TEST(Session, APlanIsTakenBackAndOnesOwnChangesStay) {
-    Desk desk;
-    Session session(desk.scene, desk.services, {{"wind", "4"}, {"caustics", "mesh"}});
+    Seat seat;
+    Session session(seat.scene, seat.services, {{"wind", "4"}, {"caustics", "mesh"}});
     view::Planned plan;
     plan.options = {{"waves", "calm"}, {"caustics", "off"}, {"no-shadows", "true"}};
     plan.reasons = {"waves: a plane"};
@@ -127,15 +127,15 @@ TEST(Session, APlanIsTakenBackAndOnesOwnChangesStay) {
 }
 
 TEST(Session, WaterGoesBackToTheScenes) {
-    Desk desk;
-    const std::string usual = desk.scene.optics.name;
-    Session session(desk.scene, desk.services, {});
+    Seat seat;
+    const std::string usual = seat.scene.optics.name;
+    Session session(seat.scene, seat.services, {});
     session.set("secchi", "5");
-    EXPECT_EQ(desk.scene.optics.name, "by Secchi depth");
+    EXPECT_EQ(seat.scene.optics.name, "by Secchi depth");
     session.set("secchi", "");
-    EXPECT_EQ(desk.scene.optics.name, usual);
+    EXPECT_EQ(seat.scene.optics.name, usual);
     // Also where the window was opened with another one.
-    Desk other;
+    Seat other;
     Session begun(other.scene, other.services, {{"secchi", "5"}});
     EXPECT_EQ(other.scene.optics.name, "by Secchi depth");
     begun.set("secchi", "");
@@ -143,12 +143,12 @@ TEST(Session, WaterGoesBackToTheScenes) {
 }
 
 TEST(Session, EverythingIsInTheCommand) {
-    Desk desk;
-    Session session(desk.scene, desk.services, {{"time", "2026-06-21T09:30"}});
+    Seat seat;
+    Session session(seat.scene, seat.services, {{"time", "2026-06-21T09:30"}});
     session.set("wind", "5");
     wait_for_levels(session);
     session.set_level(8.0, true);
-    const std::string command = desk.services.command(session.all_options(), "png");
+    const std::string command = seat.services.command(session.all_options(), "png");
     for (const char* part : {"--wind 5", "--time 2026-06-21T09:30", "--level 8.000", "--camera x="})
         EXPECT_NE(command.find(part), std::string::npos) << command;
     session.set_level(10.0, true); // as imported: nothing to say
@@ -156,8 +156,8 @@ TEST(Session, EverythingIsInTheCommand) {
 }
 
 TEST(Session, TheLevelStaysWithinReach) {
-    Desk desk;
-    Session session(desk.scene, desk.services, {});
+    Seat seat;
+    Session session(seat.scene, seat.services, {});
     session.set_level(5.0, true); // before it is ready: nothing
     EXPECT_FALSE(session.take_scene_changed());
     wait_for_levels(session);
@@ -174,14 +174,14 @@ TEST(Session, TheLevelStaysWithinReach) {
 }
 
 TEST(Session, BookmarksAreKeptOrSaidNotToBe) {
-    Desk desk;
-    desk.scene.cameras.clear();
-    Session session(desk.scene, desk.services, {});
+    Seat seat;
+    seat.scene.cameras.clear();
+    Session session(seat.scene, seat.services, {});
     session.add_bookmark("");
-    EXPECT_EQ(desk.kept, 0);
+    EXPECT_EQ(seat.kept, 0);
     for (const char* name : {"one", "two", "two", "three"})
         session.add_bookmark(name);
-    EXPECT_EQ(desk.kept, 3);
+    EXPECT_EQ(seat.kept, 3);
     session.messages.clear();
     session.add_bookmark("four");
     ASSERT_EQ(session.messages.size(), 1u);
@@ -192,44 +192,44 @@ TEST(Session, BookmarksAreKeptOrSaidNotToBe) {
 }
 
 TEST(Session, LayersAreDrapedAndNamed) {
-    Desk desk;
-    Session session(desk.scene, desk.services, {});
+    Seat seat;
+    Session session(seat.scene, seat.services, {});
     session.add_layer("nothing.gpx");
     EXPECT_TRUE(session.layers.empty());
     session.add_layer("track.gpx");
-    ASSERT_TRUE(desk.scene.drape);
+    ASSERT_TRUE(seat.scene.drape);
     EXPECT_TRUE(session.take_map_changed());
     EXPECT_EQ(session.all_options().at("layers"), "track.gpx");
     // On the line it is nearest.
-    const scene::Drape& d = *desk.scene.drape;
+    const scene::Drape& d = *seat.scene.drape;
     const int c = int((0.0 - d.west_m) / d.texel_m), r = int((d.north_m - 0.0) / d.texel_m);
     EXPECT_GT(d.nearness[std::size_t(r) * std::size_t(d.cols) + std::size_t(c)], 200);
     session.remove_layer(0);
-    EXPECT_FALSE(desk.scene.drape);
+    EXPECT_FALSE(seat.scene.drape);
     EXPECT_EQ(session.all_options().count("layers"), 0u);
 }
 
 TEST(Session, LayersInSpaceHangWhereTheyShould) {
-    Desk desk;
-    Session session(desk.scene, desk.services, {{"layers-3d", "track.gpx"}});
-    const double level = desk.scene.lakes.front().level_m;
-    ASSERT_EQ(desk.scene.space_strokes.size(), 2u); // a line and a point
-    EXPECT_FALSE(desk.scene.drape);
-    EXPECT_EQ(desk.scene.space_strokes[0].from.z, 2.0);
+    Seat seat;
+    Session session(seat.scene, seat.services, {{"layers-3d", "track.gpx"}});
+    const double level = seat.scene.lakes.front().level_m;
+    ASSERT_EQ(seat.scene.space_strokes.size(), 2u); // a line and a point
+    EXPECT_FALSE(seat.scene.drape);
+    EXPECT_EQ(seat.scene.space_strokes[0].from.z, 2.0);
     EXPECT_EQ(session.all_options().at("layers-3d"), "track.gpx");
     session.count_heights_from("level");
-    EXPECT_EQ(desk.scene.space_strokes[0].from.z, level + 2.0);
-    EXPECT_EQ(desk.scene.labels.at(0).place.z, level + 2.0);
+    EXPECT_EQ(seat.scene.space_strokes[0].from.z, level + 2.0);
+    EXPECT_EQ(seat.scene.labels.at(0).place.z, level + 2.0);
     EXPECT_EQ(session.all_options().at("layers-3d-heights"), "level");
     // They go with the water.
     wait_for_levels(session);
     session.set_level(level - 1.0, true);
-    EXPECT_NEAR(desk.scene.space_strokes[0].from.z, session.level_m() + 2.0, 1e-2);
+    EXPECT_NEAR(seat.scene.space_strokes[0].from.z, session.level_m() + 2.0, 1e-2);
     // Along the ground in pieces as long as a cell.
     session.count_heights_from("ground");
-    EXPECT_GT(desk.scene.space_strokes.size(), 10u);
-    for (const scene::SpaceStroke& s : desk.scene.space_strokes)
-        EXPECT_NEAR(s.from.z, desk.scene.ground.elevation_m(s.from.x, s.from.y) + 2.0, 1e-9);
+    EXPECT_GT(seat.scene.space_strokes.size(), 10u);
+    for (const scene::SpaceStroke& s : seat.scene.space_strokes)
+        EXPECT_NEAR(s.from.z, seat.scene.ground.elevation_m(s.from.x, s.from.y) + 2.0, 1e-9);
     // Without heights none can count from the datum; nothing changes.
     session.messages.clear();
     session.add_layer("flat.gpx", true); // at the ground
@@ -260,8 +260,8 @@ TEST(Session, SolarTimeGoesThereAndBack) {
 }
 
 TEST(Session, TheSunGoesOn) {
-    Desk desk;
-    Session session(desk.scene, desk.services, {{"time", "2026-06-21T23:00"}});
+    Seat seat;
+    Session session(seat.scene, seat.services, {{"time", "2026-06-21T23:00"}});
     session.play_sun = true;
     EXPECT_TRUE(session.advance(4.0)); // two hours
     EXPECT_EQ(session.option("time"), "2026-06-21T01:00");
@@ -269,7 +269,7 @@ TEST(Session, TheSunGoesOn) {
         session.advance(1.0 / 300.0);
     EXPECT_EQ(session.option("time"), "2026-06-21T02:00");
     // South of the equator midsummer is in December.
-    desk.scene.lakes[0].position = {-38.0, 176.0};
-    Session south(desk.scene, desk.services, {});
+    seat.scene.lakes[0].position = {-38.0, 176.0};
+    Session south(seat.scene, seat.services, {});
     EXPECT_EQ(view::format_solar(south.usual_time()), "2026-12-21T09:30");
 }
