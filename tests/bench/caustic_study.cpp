@@ -2,7 +2,7 @@
 // figures and plots of docs/physics/caustics.md. Writes data files and pictures for
 // scripts/caustic-study.
 //
-//   tarn_caustic_study FOLDER [methods]    with the word, nothing but the methods
+//   tarn_caustic_study FOLDER [methods|disc]    with a word, nothing but those tables
 #include "bench/timing.hpp"
 #include "core/error.hpp"
 #include "core/text.hpp"
@@ -58,6 +58,44 @@ Likeness compare(const std::vector<float>& got, const std::vector<double>& expec
     return {off / n / mean, std::sqrt(std::max(g2 / n - g * g, 0.0)) / g,
             std::sqrt(std::max(m2 / n - mean * mean, 0.0)) / mean, g};
 }
+
+/// Sunlight as a picture looks it up, on a square whose corner the beam through the origin meets.
+class LookUp {
+public:
+    explicit LookUp(const render::WaveField& field)
+        : program_(gpu::expand_shader(
+              gpu::shader_root(),
+              "#version 450 core\n" + field.defines() +
+                  "#include \"lib/waves.glsl\"\n#include \"lib/caustics.glsl\"\n"
+                  "layout(local_size_x = 8, local_size_y = 8) in;\n"
+                  "layout(binding = TARN_TEXTURE_SUNLIGHT) uniform sampler2DArray tiles;\n"
+                  "layout(binding = TARN_BLOCK_SUNLIGHT, std140) uniform Sunlight { SunlightBlock "
+                  "light; };\n"
+                  "layout(binding = TARN_BLOCK_WAVES, std140) uniform Waves { WaveBlock waves; };\n"
+                  "layout(binding = 0, std430) writeonly buffer Out { float result[]; };\n"
+                  "layout(location = 0) uniform vec4 square;\n" // side, depth, texels
+                  "void main() { ivec2 at = ivec2(gl_GlobalInvocationID.xy);\n"
+                  "vec2 place = (vec2(at) + 0.5) * square.x / square.z + square.y * light.beam.xy;\n"
+                  "result[at.y * int(square.z) + at.x] = sun_focus(tiles, light, waves, place, "
+                  "square.y, vec4(1.0), square.x / square.z); }\n",
+              "<look>")) {}
+
+    /// texels x texels, row = y. Tiles, waves and their block are bound.
+    std::vector<float> operator()(double side_m, double depth_m, int texels) const {
+        std::vector<float> out(std::size_t(texels) * std::size_t(texels));
+        const gpu::Buffer buffer(out.size() * sizeof(float), nullptr);
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer.id());
+        program_.use();
+        glUniform4f(0, float(side_m), float(depth_m), float(texels), 0.0f);
+        glDispatchCompute(gpu::groups(texels), gpu::groups(texels), 1);
+        glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+        glGetNamedBufferSubData(buffer.id(), 0, GLsizeiptr(out.size() * sizeof(float)), out.data());
+        return out;
+    }
+
+private:
+    gpu::ComputeProgram program_;
+};
 
 void write_pfm(const std::filesystem::path& path, const std::vector<double>& values, int side) {
     std::ofstream out(path, std::ios::binary);
@@ -137,6 +175,69 @@ void methods(const std::filesystem::path& folder) {
     }
 }
 
+/// The same as pictures see it: the sun is no point, and its own width blurs what its light draws.
+/// Each method's tiles as they are looked up, against photons from all of the disc.
+void under_the_disc() {
+    const int cascade = 1, side = 256;
+    const glm::dvec3 sun = sun_at(50.0);
+    waves::Sea one = sea_of(4.0);
+    one.cascades = {one.cascades[cascade]};
+    one.roughness = {};
+    const waves::Cascade& own = one.cascades[0];
+    const auto surface = reference::tabulated(surface_of(one), {0, 0}, own.patch_m, 1024);
+    render::WaveField field;
+    field.set(one);
+    field.move_to(0.0);
+    field.bind({0.0, 0.0}, 0.5);
+    const LookUp look(field);
+    render::SunlightVolume tiles;
+    tiles.set(one, {.sun = sun});
+    const std::vector<int> slices = {2, 5, 6, 8, 11};
+    std::map<int, std::vector<double>> photons, others;
+    std::cout << "\n| with the sun's width | photons on a side | off at ";
+    for (const int slice : slices) {
+        std::cout << fixed(tiles.slice_depth_m(0, slice), 1)
+                  << (slice == slices.back() ? " m |\n| --- | --- | --- |\n" : ", ");
+        for (const bool other : {false, true})
+            (other ? others : photons)[slice] = reference::sunlight_by_photons(
+                surface,
+                {.sun = sun,
+                 .disc_rad = scene::sun_radius_rad,
+                 .photons_a_side = 16,
+                 .seed = other},
+                {.corner_m = {0, 0}, .side_m = own.patch_m, .texels = side},
+                tiles.slice_depth_m(0, slice));
+    }
+    for (const scene::CausticsMethod& method : scene::caustics_methods())
+        for (const int dense : {1, 2, 4}) {
+            if (method.caustics == scene::Caustics::off ||
+                (dense > 1 && method.caustics != scene::Caustics::splat))
+                continue;
+            tiles.set(one, {.sun = sun, .method = method.caustics, .photons = dense});
+            tiles.update(field);
+            tiles.bind();
+            field.bind({0.0, 0.0}, 0.5);
+            std::cout << "| " << method.name << " | "
+                      << (method.caustics == scene::Caustics::splat ? text(dense) : "") << " | ";
+            for (const int slice : slices)
+                std::cout << fixed(100.0 * compare(look(own.patch_m, tiles.slice_depth_m(0, slice),
+                                                        side),
+                                                   photons[slice])
+                                               .l1,
+                                   1)
+                          << (slice == slices.back() ? " % |" : ", ");
+            std::cout << std::endl;
+        }
+    std::cout << "| photons against others of them | | ";
+    for (const int slice : slices)
+        std::cout << fixed(100.0 * compare(std::vector<float>(others[slice].begin(),
+                                                              others[slice].end()),
+                                           photons[slice])
+                                       .l1,
+                           1)
+                  << (slice == slices.back() ? " % |\n" : ", ");
+}
+
 /// How often sunlight is how strong below all the waves: after Dera, as in Tessendorf's figure 29.
 void distributions(const std::filesystem::path& folder) {
     std::ofstream data(folder / "distribution.dat");
@@ -191,35 +292,11 @@ void whole_sea(const std::filesystem::path& folder) {
                         .slices = std::getenv("K") ? std::atoi(std::getenv("K")) : 20});
         tiles.update(field);
         tiles.bind();
-        const gpu::ComputeProgram look(gpu::expand_shader(
-            gpu::shader_root(),
-            "#version 450 core\n" + field.defines() +
-                "#include \"lib/waves.glsl\"\n#include \"lib/caustics.glsl\"\n"
-                "layout(local_size_x = 8, local_size_y = 8) in;\n"
-                "layout(binding = TARN_TEXTURE_SUNLIGHT) uniform sampler2DArray tiles;\n"
-                "layout(binding = TARN_BLOCK_SUNLIGHT, std140) uniform Sunlight { SunlightBlock "
-                "light; };\n"
-                "layout(binding = TARN_BLOCK_WAVES, std140) uniform Waves { WaveBlock waves; };\n"
-                "layout(binding = 0, std430) writeonly buffer Out { float result[]; };\n"
-                "layout(location = 0) uniform vec4 square;\n" // side, depth, texels
-                "void main() { ivec2 at = ivec2(gl_GlobalInvocationID.xy);\n"
-                "vec2 place = (vec2(at) + 0.5) * square.x / square.z + square.y * light.beam.xy;\n"
-                "result[at.y * int(square.z) + at.x] = sun_focus(tiles, light, waves, place, "
-                "square.y, vec4(1.0),"
-                " square.x / square.z); }\n",
-            "<look>"));
+        const LookUp look(field);
         for (const double depth : {0.5, 1.0, 2.0, 4.0, 8.0, 16.0}) {
             const int texels = 128;
             const double side = std::clamp(depth, 1.0, 8.0);
-            const gpu::Buffer out(texels * texels * sizeof(float), nullptr);
-            glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, out.id());
-            look.use();
-            glUniform4f(0, float(side), float(depth), float(texels), 0.0f);
-            glDispatchCompute(texels / 8, texels / 8, 1);
-            glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-            std::vector<float> got(texels * texels);
-            glGetNamedBufferSubData(out.id(), 0, GLsizeiptr(got.size() * sizeof(float)),
-                                    got.data());
+            const std::vector<float> got = look(side, depth, texels);
             // Photons come from beside the square, too: the surface is tabulated around it.
             const double around = side + depth * 0.5 + 1.0;
             const glm::dvec2 corner(-0.5 * (around - side));
@@ -252,7 +329,12 @@ int main(int argc, char** argv) try {
     }
     const gpu::Context context;
     const std::string only = argc > 2 ? argv[2] : "";
+    if (only == "disc") {
+        under_the_disc();
+        return 0;
+    }
     methods(argv[1]);
+    under_the_disc();
     if (only == "methods")
         return 0;
     distributions(argv[1]);
