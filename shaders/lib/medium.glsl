@@ -86,12 +86,14 @@ vec3 path_radiance(sampler2D table, vec4 scale, float slant, float depth_m, floa
     return (water_row(table, scale, 1, start + gain) - water_row(table, scale, 1, start)) / rate;
 }
 
-// glow_radiance — light that the water scatters forwards into a straight path: the glow around the sun seen from below.
+// glow_radiance — light of the sun or the sky that the water scatters forwards into a straight path: what glows around
+//                 the sun, and softens the rim of Snell's window, seen from below.
 //
 //   glow       RGBA32F, what a metre scatters forwards over the angle off the beam and the light's path, both spaced by
 //              logarithm: scene/water_colour.hpp, make_glow_colours()
 //   fall       of light in the water, about [1/m], > 0
-//   angle_rad  between path and beam, both towards where the light comes from, [0, pi]
+//   angle_rad  between path and the sun's beam, or the vertical for the sky's, both towards where the light comes
+//              from, [0, pi]
 //   the others and what it is a share of: as in path_radiance()
 // Accuracy 1.5 % of the sum over wavelengths near the sun, beside it 1.5 % of all scattered light
 // (tests/gpu/medium_gpu_test.cpp).
@@ -117,3 +119,8 @@ vec3 glow_radiance(sampler2D glow, vec4 scale, float fall, float slant, float de
     return part.x * textureLod(glow, vec2(x, y.x), 0.0).rgb + part.y * textureLod(glow, vec2(x, y.y), 0.0).rgb +
            part.z * textureLod(glow, vec2(x, y.z), 0.0).rgb + part.w * textureLod(glow, vec2(x, y.w), 0.0).rgb;
 }
+
+// sky_glow_slant — path, per metre of depth, of the skylight that is scattered forwards into views at an angle off the
+//                  vertical: what comes from straight above has come a shorter way than what comes over the rim of
+//                  Snell's window. Fitted to photons (tests/unit/glow_test.cpp).
+float sky_glow_slant(float angle_rad) { return 1.1 + 0.16 * min(angle_rad / 0.85, 1.0); }

@@ -24,6 +24,7 @@ layout(binding = TARN_TEXTURE_SKY) uniform sampler2D sky_table;
 layout(binding = TARN_TEXTURE_WATER) uniform sampler2D water;
 #ifdef TARN_GLOW
 layout(binding = TARN_TEXTURE_GLOW) uniform sampler2D glow;
+layout(binding = TARN_TEXTURE_SKY_GLOW) uniform sampler2D sky_glow;
 #endif
 layout(binding = TARN_TEXTURE_ORTHO) uniform sampler2D ortho;
 layout(binding = TARN_TEXTURE_OVERLAY) uniform sampler2D overlay;
@@ -57,13 +58,11 @@ const vec3 layer_colour = vec3(0.85, 0.18, 0.05);
 bool on(uint flag) { return (view.counts.z & flag) != 0u; }
 
 // What sky and sun send from a direction.
-//
-//   disc_left  share of the sun's disc that is seen in its place
-vec3 sky(vec3 direction, vec3 disc_left) {
+vec3 sky(vec3 direction) {
     vec3 radiance = sky_radiance(sky_table, direction, view.sun.xyz);
     if (on(TARN_FLAG_SUN_DISC)) {
         float radius = view.sun.w;
-        radiance += disc_left * view.sun_irradiance.rgb / (3.14159265359 * radius * radius) *
+        radiance += view.sun_irradiance.rgb / (3.14159265359 * radius * radius) *
                     disc_share(direction, view.sun.xyz, radius, view.camera.w);
     }
     return radiance;
@@ -270,14 +269,17 @@ vec3 scattered_radiance(Part part, float from_m, float to_m, float water_m, floa
         focus *= lit_way(part, from_m, length_m, below);
 #endif
     vec3 scattered = path_radiance(water, view.water, 1.0 / below.z, depth, sink, water_m + from_m, length_m);
+    vec3 skylight = path_radiance(water, view.water, sky_slant, depth, sink, water_m + from_m, length_m);
 #ifdef TARN_GLOW
     float off_beam = atan(length(cross(part.direction, below)), dot(part.direction, below));
     scattered += glow_radiance(glow, view.water, view.optics.w, 1.0 / below.z, depth, sink, water_m + from_m,
                                length_m, off_beam);
+    float off_vertical = acos(clamp(part.direction.z, -1.0, 1.0));
+    skylight += glow_radiance(sky_glow, view.water, view.optics.w, sky_glow_slant(off_vertical), depth, sink,
+                              water_m + from_m, length_m, off_vertical);
 #endif
     return focus * sun_irradiance_below(below) * scattered +
-           view.sky_irradiance.rgb * (view.optics.z * sky_slant) *
-               path_radiance(water, view.water, sky_slant, depth, sink, water_m + from_m, length_m);
+           view.sky_irradiance.rgb * (view.optics.z * sky_slant) * skylight;
 }
 
 // Up to where the water's own light is summed. What lies before a rasterised thing and what lies behind it are to be as
@@ -304,16 +306,13 @@ vec3 overlay_radiance(Part part, End end, vec3 radiance) {
     return drawn * radiance + blurred * scattered_radiance(part, end.t, max(reach(view, part), end.t), 0.0, 1.0);
 }
 
-// Share of the sun's disc, of what so much water lets through, that was not scattered and is seen in its place. Channels
-// out of gamut are negative in both.
-vec3 disc_left(float water_m) {
+// What is left in its place of light from above the water: what was scattered forwards glows around it.
+vec3 seen_through(float water_m) {
 #ifdef TARN_GLOW
-    if (water_m > 0.0) {
-        vec3 all = transmittance(water, view.water, water_m);
-        return image_transmittance(water, view.water, water_m) / mix(all, vec3(1e-9), lessThan(abs(all), vec3(1e-9)));
-    }
+    return image_transmittance(water, view.water, water_m);
+#else
+    return transmittance(water, view.water, water_m);
 #endif
-    return vec3(1.0);
 }
 
 // Radiance that a part brings to the eye, but for the split's factor and, in the air, the water before it.
@@ -335,7 +334,7 @@ vec3 part_radiance(Part part, End end, float before_m, float water_m, Sunlit sun
             radiance = through_air(part, end.t, radiance);
 #endif
     } else if ((end.flags & (end_surface | end_overlay)) == 0u && !part.in_water)
-        radiance += sky(part.direction, disc_left(water_m));
+        radiance += sky(part.direction);
     return radiance;
 }
 
@@ -512,7 +511,7 @@ Shaded shade_pixel(ivec2 local, ivec2 pixel) {
 #endif
     vec3 radiance = part_radiance(first, first_end, 0.0, 0.0, sunlit);
     float water_m = first.in_water ? first_end.t : 0.0;
-    vec3 remaining = first.in_water ? transmittance(water, view.water, water_m) : vec3(1.0); // of light from its end
+    vec3 remaining = first.in_water ? seen_through(water_m) : vec3(1.0); // of light from above the water
     if ((first_end.flags & end_overlay) != 0u)
         radiance += overlay_radiance(first, first_end, texelFetch(overlay, pixel, 0).rgb);
     bool sheet = false; // the water shows its depth instead of itself

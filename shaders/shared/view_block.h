@@ -33,7 +33,8 @@ using ivec4 = glm::ivec4;
 #define TARN_PORT_SIDE 64    // texels
 #define TARN_TEXTURE_EXPOSED 16 // R8: share of bed that has fallen dry, a texel a node
 #define TARN_TEXTURE_DRAPE 17  // R8: nearness of draped lines over the ground (lib/markings.glsl)
-#define TARN_TEXTURE_GLOW 18   // RGBA32F: light around a beam in the water (lib/medium.glsl)
+#define TARN_TEXTURE_GLOW 18   // RGBA32F: light around the sun's beam in the water (lib/medium.glsl)
+#define TARN_TEXTURE_SKY_GLOW 21 // RGBA32F: the same of skylight, around the vertical
 #define TARN_TEXTURE_PICTURE 20 // the picture so far: passes/display.comp, passes/meter.comp
 #define TARN_BUFFER_METER 1    // passes/meter.comp
 #define TARN_IMAGE_SCREEN 6    // rgba8: passes/display.comp; beams and port heights are written before a picture, this after it

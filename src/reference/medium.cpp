@@ -12,6 +12,8 @@
 
 namespace tarn::reference {
 
+double sky_glow_slant(double angle_rad) { return 1.1 + 0.16 * std::min(angle_rad / 0.85, 1.0); }
+
 Medium::Medium(const scene::WaterOptics& optics, bool spectral) : index_(optics.index) {
     const auto sum_over = [&](double step_nm) {
         std::vector<Wave> waves;
@@ -102,11 +104,21 @@ glm::dvec3 Medium::scattered_beyond(double path_m) const {
 
 glm::dvec3 Medium::glow_radiance(double slant, double depth_m, double sink, double before_m,
                                  double distance_m, double angle_rad) const {
+    return glow_by(scene::glow_table(), slant, depth_m, sink, before_m, distance_m, angle_rad);
+}
+
+glm::dvec3 Medium::sky_glow_radiance(double depth_m, double sink, double before_m,
+                                     double distance_m, double angle_rad) const {
+    return glow_by(scene::sky_glow_table(index_), sky_glow_slant(angle_rad), depth_m, sink,
+                   before_m, distance_m, angle_rad);
+}
+
+glm::dvec3 Medium::glow_by(const scene::GlowTable& glow, double slant, double depth_m, double sink,
+                           double before_m, double distance_m, double angle_rad) const {
     const double rate = 1.0 + slant * sink, start = slant * depth_m + before_m;
     glm::dvec3 sum(0.0);
     if (angle_rad >= 0.5 * pi)
         return sum;
-    const scene::GlowTable& glow = scene::glow_table();
     const double column = glow.column_of(angle_rad);
     double greatest = 0.0;
     for (const Wave& wave : glow_waves_)

@@ -371,22 +371,31 @@ private:
         }
     }
 
-    /// @param water_m  that the light comes through: what it scattered is not in the sun's disc
-    glm::dvec3 sky(glm::dvec3 direction, double water_m = 0.0) const {
+    glm::dvec3 sky(glm::dvec3 direction) const {
         glm::dvec3 out = sky_radiance(light_.sky, direction, light_.sun_direction);
         if (light_.sun_disc) {
             const double solid_angle = pi * scene::sun_radius_rad * scene::sun_radius_rad;
-            glm::dvec3 left(1.0);
-            if (settings_.forward_glow && water_m > 0.0) {
-                const glm::dvec3 all = medium_.transmittance(water_m),
-                                 seen = medium_.image_transmittance(water_m);
-                for (int k = 0; k < 3; ++k) // channels out of gamut are negative in both
-                    left[k] = std::abs(all[k]) > 1e-12 ? seen[k] / all[k] : 0.0;
-            }
-            out += left * light_.sun_irradiance / solid_angle *
+            out += light_.sun_irradiance / solid_angle *
                    disc_share(direction, light_.sun_direction, scene::sun_radius_rad, pixel_rad_);
         }
         return out;
+    }
+
+    /// What is left in its place of light from above the water: what was scattered forwards glows
+    /// around it.
+    glm::dvec3 seen_through(double water_m) const {
+        return settings_.forward_glow ? medium_.image_transmittance(water_m)
+                                      : medium_.transmittance(water_m);
+    }
+
+    /// The sky's light that the water scatters into a part of the view.
+    glm::dvec3 sky_scattered(glm::dvec3 direction, double depth, double before_m,
+                             double length) const {
+        glm::dvec3 sum = medium_.path_radiance(sky_slant, depth, -direction.z, before_m, length);
+        if (settings_.forward_glow)
+            sum += medium_.sky_glow_radiance(depth, -direction.z, before_m, length,
+                                             std::acos(std::clamp(direction.z, -1.0, 1.0)));
+        return light_.sky_irradiance * medium_.sky_entering() * sky_slant * sum;
     }
 
     /// Light from that far away through the haze, and the haze's own.
@@ -626,9 +635,7 @@ private:
                                 std::max(glm::dot(luminance, medium_.transmittance(way)), 1e-9),
                             0.0, 1.0);
         const glm::dvec3 mark =
-            albedo / pi * irradiance +
-            light_.sky_irradiance * medium_.sky_entering() * sky_slant *
-                medium_.path_radiance(sky_slant, start_depth, -direction.z, water_before_m, at) +
+            albedo / pi * irradiance + sky_scattered(direction, start_depth, water_before_m, at) +
             (up > 0.0 ? sun_irradiance_below_ * sun_scattered(origin, direction, start_depth,
                                                               water_before_m, at, lake->bed_known)
                       : glm::dvec3(0.0));
@@ -637,12 +644,10 @@ private:
 
     /// Radiance arriving at `origin` from `direction`, both in the air.
     /// @param chances  none: no water surface is looked for
-    /// @param water_m  between there and the eye
     glm::dvec3 in_air(glm::dvec3 origin, glm::dvec3 direction, double before_m, double* distance,
-                      std::optional<Chances> chances, double water_m = 0.0) const {
+                      std::optional<Chances> chances) const {
         double end_m = infinity;
-        const glm::dvec3 radiance =
-            in_clear_air(origin, direction, before_m, end_m, chances, water_m);
+        const glm::dvec3 radiance = in_clear_air(origin, direction, before_m, end_m, chances);
         if (distance)
             *distance = end_m;
         return behind_lines(radiance, origin, direction, end_m, before_m, 0.0, nullptr);
@@ -651,11 +656,11 @@ private:
     /// The same without lines in space.
     /// @param end_m  on return: to what was met
     glm::dvec3 in_clear_air(glm::dvec3 origin, glm::dvec3 direction, double before_m, double& end_m,
-                            std::optional<Chances> chances, double water_m) const {
+                            std::optional<Chances> chances) const {
         const auto met = meet_in_air(origin, direction, chances.has_value());
         end_m = met ? met->hit.t : infinity;
         if (!met)
-            return sky(direction, water_m);
+            return sky(direction);
         const Hit& hit = met->hit;
         if (!hit.water)
             return through_air(origin, direction, hit.t,
@@ -775,9 +780,7 @@ private:
         if (distance)
             *distance = hit || at_surface ? length : infinity;
 
-        glm::dvec3 out =
-            light_.sky_irradiance * medium_.sky_entering() * sky_slant *
-            medium_.path_radiance(sky_slant, depth, -direction.z, water_before_m, length);
+        glm::dvec3 out = sky_scattered(direction, depth, water_before_m, length);
         if (light_.sun_direction.z > 0.0)
             out += sun_irradiance_below_ *
                    sun_scattered(origin, direction, depth, water_before_m, length, lake.bed_known);
@@ -799,9 +802,9 @@ private:
             out += at.mirror * in_water(top - above, at.reflected, lake, before_m + length, water_m,
                                         nullptr, further(*chances, 0));
         if (settings_.refraction && at.mirror < 1.0)
-            out += medium_.transmittance(water_m) * at.through *
-                   in_air(top + above, at.refracted, before_m + length, nullptr,
-                          further(*chances, 1), water_m);
+            out +=
+                seen_through(water_m) * at.through *
+                in_air(top + above, at.refracted, before_m + length, nullptr, further(*chances, 1));
         return out;
     }
 

@@ -2,6 +2,7 @@
 #include "core/parallel.hpp"
 #include "render/renderer.hpp"
 #include "render/stroke_tree.hpp"
+#include "scene/forward_glow.hpp"
 #include "scene/land_shadow.hpp"
 #include "scene/water_colour.hpp"
 
@@ -217,9 +218,7 @@ void Renderer::upload_water(bool spectral) {
 bool Renderer::scatters_forwards(const scene::View& view) const {
     const auto scatters = [](const scene::WaterBand& band) { return band.forward_per_m() > 0.0; };
     const auto& bands = scene_.optics.bands;
-    const glm::dvec3 sun = view.lighting.sun_irradiance;
     return view.settings.forward_glow && view.settings.spectral &&
-           view.lighting.sun_direction.z > 0.0 && sun.x + sun.y + sun.z > 0.0 &&
            std::any_of(bands.begin(), bands.end(), scatters);
 }
 
@@ -227,13 +226,19 @@ bool Renderer::scatters_forwards(const scene::View& view) const {
 void Renderer::upload_glow() {
     if (glow_made_ != scene_.optics) {
         glow_made_ = scene_.optics;
-        const scene::GlowColours colours =
-            scene::make_glow_colours(scene_.optics, water_longest_m_);
-        glow_ = gpu::Texture2D(GL_RGBA32F, colours.angles, colours.paths, 1, gpu::Filter::linear,
-                               "glow");
-        glow_.upload(GL_RGBA, GL_FLOAT, colours.rgb.data());
+        const auto upload = [&](const scene::GlowTable& table, const char* name) {
+            const scene::GlowColours colours =
+                scene::make_glow_colours(scene_.optics, table, water_longest_m_);
+            gpu::Texture2D out(GL_RGBA32F, colours.angles, colours.paths, 1, gpu::Filter::linear,
+                               name);
+            out.upload(GL_RGBA, GL_FLOAT, colours.rgb.data());
+            return out;
+        };
+        glow_ = upload(scene::glow_table(), "glow");
+        sky_glow_ = upload(scene::sky_glow_table(scene_.optics.index), "sky glow");
     }
     glow_.bind(TARN_TEXTURE_GLOW);
+    sky_glow_.bind(TARN_TEXTURE_SKY_GLOW);
 }
 
 // Which water the sun's light comes into, by where it enters; where neither land nor bed hides

@@ -2,9 +2,12 @@
 
 #include "core/angles.hpp"
 #include "scene/lighting.hpp"
+#include "scene/water_colour.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 
 namespace tarn::scene {
 
@@ -57,6 +60,71 @@ double peaked_sum() {
     return sum;
 }
 
+// Moments beyond these say nothing once the sun's own width has blurred them.
+constexpr int moments = 1400;
+
+/// P_l at each of some cosines: each(l, values), l from 0 on.
+template <class Each>
+void legendre(const std::vector<double>& cosines, Each&& each) {
+    std::vector<double> before(cosines.size(), 1.0), now = cosines;
+    for (int l = 0; l < moments; ++l) {
+        each(l, before);
+        for (std::size_t i = 0; i < cosines.size(); ++i) {
+            const double next = ((2 * l + 3) * cosines[i] * now[i] - (l + 1) * before[i]) / (l + 2);
+            before[i] = now[i];
+            now[i] = next;
+        }
+    }
+}
+
+/// Legendre moments of what lies at some angles with some weights.
+std::vector<double> moments_of(const std::vector<double>& theta,
+                               const std::vector<double>& weight) {
+    std::vector<double> cosines, out(moments);
+    for (const double angle : theta)
+        cosines.push_back(std::cos(angle));
+    legendre(cosines, [&](int l, const std::vector<double>& p) {
+        for (std::size_t i = 0; i < weight.size(); ++i)
+            out[std::size_t(l)] += weight[i] * p[i];
+    });
+    return out;
+}
+
+const std::vector<double>& phase_moments() {
+    static const std::vector<double> out = [] {
+        const Rule rule = angles_of_half_sphere();
+        std::vector<double> weight;
+        for (std::size_t i = 0; i < rule.theta.size(); ++i)
+            weight.push_back(rule.solid_angle[i] * peaked_part(rule.theta[i]) / peaked_sum());
+        return moments_of(rule.theta, weight);
+    }();
+    return out;
+}
+
+/// @param light  moments of where the light comes from, before anything is scattered
+GlowTable make_table(const std::vector<double>& light) {
+    GlowTable out;
+    const std::vector<double>& phase = phase_moments();
+    std::vector<double> sum(std::size_t(out.angles) * out.depths), cosines;
+    for (int c = 0; c < out.angles; ++c)
+        cosines.push_back(std::cos(out.angle_rad(c)));
+    legendre(cosines, [&](int l, const std::vector<double>& p) {
+        for (int r = 0; r < out.depths; ++r) {
+            const double tau = out.tau(r), m = phase[std::size_t(l)];
+            const double scattered = tau > 0.0 ? std::exp(-tau) * std::expm1(tau * m) / tau : m;
+            const double factor = (2 * l + 1) / (4.0 * pi) * scattered * light[std::size_t(l)];
+            for (int c = 0; c < out.angles; ++c)
+                sum[std::size_t(r * out.angles + c)] += factor * p[std::size_t(c)];
+        }
+    });
+    for (int i = 0; i < out.angles * out.depths; ++i) {
+        const double t =
+            std::clamp((90.0 - out.angle_rad(i % out.angles) / degree) / 20.0, 0.0, 1.0);
+        out.h.push_back(float(std::max(sum[std::size_t(i)], 0.0) * t * t * (3.0 - 2.0 * t)));
+    }
+    return out;
+}
+
 } // namespace
 
 double forward_phase(double theta) { return peaked_part(theta) / peaked_sum(); }
@@ -90,56 +158,35 @@ double GlowTable::at_place(double x, double y) const {
 
 const GlowTable& glow_table() {
     static const GlowTable table = [] {
-        // Moments beyond these say nothing once the sun's own width has blurred them.
-        constexpr int moments = 1400;
-        std::vector<double> moment(moments), before, now;
-        const Rule rule = angles_of_half_sphere();
-        std::vector<double> weight(rule.theta.size());
-        for (std::size_t i = 0; i < weight.size(); ++i)
-            weight[i] = rule.solid_angle[i] * forward_phase(rule.theta[i]);
-        const auto legendre = [&](const std::vector<double>& cosines, auto&& each) {
-            before.assign(cosines.size(), 1.0);
-            now = cosines;
-            for (int l = 0; l < moments; ++l) {
-                each(l, before);
-                for (std::size_t i = 0; i < cosines.size(); ++i) {
-                    const double next =
-                        ((2 * l + 3) * cosines[i] * now[i] - (l + 1) * before[i]) / (l + 2);
-                    before[i] = now[i];
-                    now[i] = next;
-                }
-            }
-        };
-        std::vector<double> cosines;
-        for (const double theta : rule.theta)
-            cosines.push_back(std::cos(theta));
-        legendre(cosines, [&](int l, const std::vector<double>& p) {
-            for (std::size_t i = 0; i < weight.size(); ++i)
-                moment[std::size_t(l)] += weight[i] * p[i];
-        });
-        GlowTable out;
-        std::vector<double> sum(std::size_t(out.angles) * out.depths);
-        cosines.clear();
-        for (int c = 0; c < out.angles; ++c)
-            cosines.push_back(std::cos(out.angle_rad(c)));
-        legendre(cosines, [&](int l, const std::vector<double>& p) {
-            const double blur = std::exp(-0.5 * l * (l + 1) * sun_radius_rad * sun_radius_rad);
-            for (int r = 0; r < out.depths; ++r) {
-                const double tau = out.tau(r), m = moment[std::size_t(l)];
-                const double scattered = tau > 0.0 ? std::exp(-tau) * std::expm1(tau * m) / tau : m;
-                const double factor = (2 * l + 1) / (4.0 * pi) * scattered * blur;
-                for (int c = 0; c < out.angles; ++c)
-                    sum[std::size_t(r * out.angles + c)] += factor * p[std::size_t(c)];
-            }
-        });
-        for (int i = 0; i < out.angles * out.depths; ++i) {
-            const double t =
-                std::clamp((90.0 - out.angle_rad(i % out.angles) * 180.0 / pi) / 20.0, 0.0, 1.0);
-            out.h.push_back(float(std::max(sum[std::size_t(i)], 0.0) * t * t * (3.0 - 2.0 * t)));
-        }
-        return out;
+        std::vector<double> disc;
+        for (int l = 0; l < moments; ++l)
+            disc.push_back(std::exp(-0.5 * l * (l + 1) * sun_radius_rad * sun_radius_rad));
+        return make_table(disc);
     }();
     return table;
+}
+
+const GlowTable& sky_glow_table(double index) {
+    static std::mutex guard;
+    static std::map<double, GlowTable> made; // references into it stay
+    const std::scoped_lock lock(guard);
+    if (const auto known = made.find(index); known != made.end())
+        return known->second;
+    // Crowded towards the window's rim, where its radiance falls to nothing like a root.
+    constexpr int count = 2000;
+    const double rim = std::asin(1.0 / index);
+    std::vector<double> theta, weight;
+    double sum = 0.0;
+    for (int i = 0; i < count; ++i) {
+        const double t = (i + 0.5) / count, angle = rim * (1.0 - t * t);
+        theta.push_back(angle);
+        weight.push_back((1.0 - reflectance_from_below(std::cos(angle), index)) * std::sin(angle) *
+                         t);
+        sum += weight.back();
+    }
+    for (double& w : weight)
+        w /= sum;
+    return made.emplace(index, make_table(moments_of(theta, weight))).first->second;
 }
 
 } // namespace tarn::scene

@@ -1,5 +1,5 @@
 #pragma once
-/// @file forward_glow.hpp  Where the sun's light goes that water scatters forwards.
+/// @file forward_glow.hpp  Where the light of sun and sky goes that water scatters forwards.
 ///
 /// Quasi-single scattering counts it as not scattered: right for how much light arrives, and for
 /// what is lit. Seen from below it is not in the sun's disc, though, but in a glow around it:
@@ -43,7 +43,12 @@ struct GlowTable {
     }
 };
 
-/// Made once.
+/// Of the sun's light. Made once.
 const GlowTable& glow_table();
+
+/// Of an even sky's, seen through a flat surface: per unit of scalar irradiance, angles off the
+/// vertical. Made once for each index of refraction.
+/// @param index  of the water, >= 1
+const GlowTable& sky_glow_table(double index);
 
 } // namespace tarn::scene

@@ -50,16 +50,6 @@ std::vector<Band> bands_of(const WaterOptics& optics, bool spectral) {
     return out;
 }
 
-/// Reflectance from the water of index n, unpolarised; mu = cosine in the water.
-double reflectance_from_below(double mu, double n) {
-    const double sin2 = n * n * (1.0 - mu * mu);
-    if (sin2 >= 1.0)
-        return 1.0;
-    const double out = std::sqrt(1.0 - sin2);
-    const double s = (n * mu - out) / (n * mu + out), p = (mu - n * out) / (mu + n * out);
-    return 0.5 * (s * s + p * p);
-}
-
 struct Angle {
     double cosine, share; ///< share: 2 mu F d mu
 };
@@ -82,6 +72,15 @@ std::vector<Angle> mirrored_angles(double n) {
 }
 
 } // namespace
+
+double reflectance_from_below(double mu, double n) {
+    const double sin2 = n * n * (1.0 - mu * mu);
+    if (sin2 >= 1.0)
+        return 1.0;
+    const double out = std::sqrt(1.0 - sin2);
+    const double s = (n * mu - out) / (n * mu + out), p = (mu - n * out) / (mu + n * out);
+    return 0.5 * (s * s + p * p);
+}
 
 glm::dvec3 sunlight_colour(double nm) {
     const double x = 0.362 * lobe(nm, 442.0, 0.0624, 0.0374) +
@@ -182,8 +181,7 @@ WaterTable make_water_table(const WaterOptics& optics, bool spectral) {
     return table;
 }
 
-GlowColours make_glow_colours(const WaterOptics& optics, double longest_m) {
-    const GlowTable& glow = glow_table();
+GlowColours make_glow_colours(const WaterOptics& optics, const GlowTable& glow, double longest_m) {
     GlowColours out;
     out.angles = glow.angles;
     const std::vector<Band> bands = bands_of(optics, true);

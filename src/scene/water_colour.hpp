@@ -25,6 +25,8 @@
 
 namespace tarn::scene {
 
+struct GlowTable;
+
 /// Shares of red, green and blue in sunlight of that wavelength, per nm, not normalised.
 glm::dvec3 sunlight_colour(double wavelength_nm);
 
@@ -49,17 +51,23 @@ struct WaterTable {
 /// @param spectral  false: three narrow bands, an exponential each
 WaterTable make_water_table(const WaterOptics& optics, bool spectral);
 
-/// The glow that water makes of the sun's light, by colour: what a metre scatters forwards,
+/// Share of unpolarised light that a flat surface of water throws back at what comes from below.
+/// @param cosine  of the angle in the water, [0, 1]   @param index  of the water, >= 1
+double reflectance_from_below(double cosine, double index);
+
+/// The glow that water makes of the sun's or the sky's light, by colour: what a metre scatters
+/// forwards,
 ///   sum of w b_f exp(-(a + b_b) x) H(angle, b_f x)  [1/(m sr)]   (scene/forward_glow.hpp),
-/// over the angle off the beam and the path x, b_f being WaterBand::forward_per_m().
+/// over the table's angle and the path x, b_f being WaterBand::forward_per_m().
 struct GlowColours {
     static constexpr int paths = 256;
     int angles = 0;
     std::vector<glm::vec4> rgb; ///< [path][angle], alpha 0; paths spaced as a WaterTable's are
 };
 
+/// @param glow       the sun's or the sky's
 /// @param longest_m  the last path: WaterTable::longest_m
 /// @pre   optics have bands
-GlowColours make_glow_colours(const WaterOptics& optics, double longest_m);
+GlowColours make_glow_colours(const WaterOptics& optics, const GlowTable& glow, double longest_m);
 
 } // namespace tarn::scene

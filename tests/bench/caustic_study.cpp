@@ -75,7 +75,8 @@ public:
                   "layout(binding = 0, std430) writeonly buffer Out { float result[]; };\n"
                   "layout(location = 0) uniform vec4 square;\n" // side, depth, texels
                   "void main() { ivec2 at = ivec2(gl_GlobalInvocationID.xy);\n"
-                  "vec2 place = (vec2(at) + 0.5) * square.x / square.z + square.y * light.beam.xy;\n"
+                  "vec2 place = (vec2(at) + 0.5) * square.x / square.z + square.y * "
+                  "light.beam.xy;\n"
                   "result[at.y * int(square.z) + at.x] = sun_focus(tiles, light, waves, place, "
                   "square.y, vec4(1.0), square.x / square.z); }\n",
               "<look>")) {}

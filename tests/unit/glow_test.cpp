@@ -2,9 +2,11 @@
 #include "core/angles.hpp"
 #include "reference/medium.hpp"
 #include "scene/forward_glow.hpp"
+#include "scene/water_colour.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <random>
@@ -48,26 +50,57 @@ struct Ring {
     double from_deg, to_deg;
 };
 
-/// Mean radiance of rings around the sun at a depth, per unit of irradiance below the surface on a
-/// plane facing its beam; directions flatter than `least_rise` left out. Scattering is 1/m.
-std::vector<double> by_photons(const std::vector<Ring>& rings, glm::dvec3 sun, double loss_per_m,
-                               double depth_m, double least_rise, int photons) {
+/// Where light comes from below the surface, at random, and what flux it brings to a level plane,
+/// for a scalar irradiance of 1.
+struct Start {
+    glm::dvec3 from;
+    double flux;
+};
+using Light = std::function<Start(std::mt19937_64&)>;
+
+Light light_of_sun(glm::dvec3 sun) {
+    return [sun](std::mt19937_64&) { return Start{sun, sun.z}; };
+}
+
+/// Of an even sky, through the window in a flat surface.
+Light light_of_sky() {
+    constexpr double index = 1.333;
+    const double rim = std::sqrt(1.0 - 1.0 / (index * index));
+    double sum = 0.0;
+    constexpr int n = 100'000;
+    for (int i = 0; i < n; ++i)
+        sum += (1.0 - reflectance_from_below(std::lerp(rim, 1.0, (i + 0.5) / n), index)) / n;
+    return [rim, sum](std::mt19937_64& random) {
+        std::uniform_real_distribution<double> even;
+        const double cosine = std::lerp(rim, 1.0, even(random)), turn = 2.0 * M_PI * even(random),
+                     sine = std::sqrt(1.0 - cosine * cosine);
+        return Start{{sine * std::cos(turn), sine * std::sin(turn), cosine},
+                     cosine * (1.0 - reflectance_from_below(cosine, index)) / sum};
+    };
+}
+
+/// Radiance times solid angle of what was scattered, of rings around an axis at a depth, for a
+/// scalar irradiance of 1 below the surface; directions flatter than `least_rise` left out.
+/// Scattering is 1/m.
+std::vector<double> by_photons(const std::vector<Ring>& rings, glm::dvec3 axis, const Light& light,
+                               double loss_per_m, double depth_m, double least_rise, int photons) {
     const Scatterer scatterer;
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> even;
     std::vector<double> sum(rings.size());
     for (int p = 0; p < photons; ++p) {
-        glm::dvec3 way = -sun;
+        const Start start = light(random);
+        glm::dvec3 way = -start.from;
         double depth = 0.0, weight = 1.0;
-        while (weight > 1e-6) {
+        for (bool scattered = false; weight > 1e-6; scattered = true) {
             const double step = -std::log(1.0 - even(random)), next = depth - way.z * step;
-            if ((depth < depth_m) != (next < depth_m) && -way.z > least_rise) {
-                const double off = std::acos(std::min(glm::dot(-way, sun), 1.0)) / degree;
+            if (scattered && (depth < depth_m) != (next < depth_m) && -way.z > least_rise) {
+                const double off = std::acos(std::min(glm::dot(-way, axis), 1.0)) / degree;
                 const double left =
                     weight * std::exp(-loss_per_m * (depth_m - depth) / -way.z) / -way.z;
                 for (std::size_t r = 0; r < rings.size(); ++r)
                     if (off > rings[r].from_deg && off < rings[r].to_deg)
-                        sum[r] += left * sun.z / photons;
+                        sum[r] += left * start.flux / photons;
             }
             weight *= std::exp(-loss_per_m * step);
             depth = next;
@@ -84,9 +117,10 @@ std::vector<double> by_photons(const std::vector<Ring>& rings, glm::dvec3 sun, d
     return sum;
 }
 
-/// The model's sum over the same rings [radiance times solid angle].
-std::vector<double> by_model(const std::vector<Ring>& rings, glm::dvec3 sun, double loss_per_m,
-                             double depth_m, double least_rise) {
+/// The model's sum over the same rings.
+/// @param axis  the sun, or the vertical for the sky
+std::vector<double> by_model(const std::vector<Ring>& rings, glm::dvec3 axis, bool sky,
+                             double loss_per_m, double depth_m, double least_rise) {
     // Half of what is lost is scattered back, so that b_f = 1.
     WaterOptics optics;
     const double back = 0.5 * loss_per_m;
@@ -95,7 +129,7 @@ std::vector<double> by_model(const std::vector<Ring>& rings, glm::dvec3 sun, dou
     const reference::Medium medium(optics, true);
     std::mt19937 random(2);
     std::uniform_real_distribution<double> even;
-    const glm::dvec3 e(0, 1, 0), f = glm::cross(sun, e);
+    const glm::dvec3 e(0, 1, 0), f = glm::cross(axis, e);
     constexpr int looks = 20000;
     std::vector<double> sum;
     for (const Ring& ring : rings) {
@@ -104,11 +138,12 @@ std::vector<double> by_model(const std::vector<Ring>& rings, glm::dvec3 sun, dou
         for (int i = 0; i < looks; ++i) {
             const double c = std::lerp(c0, c1, even(random)), turn = 2.0 * M_PI * even(random);
             const glm::dvec3 view =
-                c * sun + std::sqrt(1.0 - c * c) * (std::cos(turn) * e + std::sin(turn) * f);
+                c * axis + std::sqrt(1.0 - c * c) * (std::cos(turn) * e + std::sin(turn) * f);
             if (view.z > least_rise)
-                s += medium
-                         .glow_radiance(1.0 / sun.z, depth_m, -view.z, 0.0, depth_m / view.z,
-                                        std::acos(c))
+                s += (sky ? medium.sky_glow_radiance(depth_m, -view.z, 0.0, depth_m / view.z,
+                                                     std::acos(c))
+                          : medium.glow_radiance(1.0 / axis.z, depth_m, -view.z, 0.0,
+                                                 depth_m / view.z, std::acos(c)))
                          .y *
                      2.0 * M_PI * (c0 - c1) / looks;
         }
@@ -164,8 +199,9 @@ TEST(Glow, AgreesWithPhotons) {
             for (const double tau : {0.5, 4.0}) {
                 const glm::dvec3 sun(std::sin(sun_deg * degree), 0.0, std::cos(sun_deg * degree));
                 const double depth = tau * sun.z, least_rise = 0.3;
-                const auto photons = by_photons(rings, sun, loss_per_m, depth, least_rise, 40'000);
-                const auto model = by_model(rings, sun, loss_per_m, depth, least_rise);
+                const auto photons = by_photons(rings, sun, light_of_sun(sun), loss_per_m, depth,
+                                                least_rise, 40'000);
+                const auto model = by_model(rings, sun, false, loss_per_m, depth, least_rise);
                 for (std::size_t r = 0; r < rings.size(); ++r) {
                     worst = std::max(worst, std::abs(model[r] / photons[r] - 1.0));
                     EXPECT_NEAR(model[r] / photons[r], 1.0, 0.15)
@@ -174,4 +210,22 @@ TEST(Glow, AgreesWithPhotons) {
                 }
             }
     std::printf("worst ring %.1f %% off\n", 100.0 * worst);
+}
+
+// The sky's, through Snell's window: inside it, over its rim at 48.6 degrees, beyond.
+TEST(Glow, OfSkylightAgreesWithPhotons) {
+    const std::vector<Ring> rings = {{0, 15}, {15, 30}, {30, 42}, {44, 50}, {50, 56}, {56, 66}};
+    for (const double loss_per_m : {0.08, 0.6})
+        for (const double tau : {0.5, 1.5, 4.0}) {
+            const glm::dvec3 up(0, 0, 1);
+            const auto photons =
+                by_photons(rings, up, light_of_sky(), loss_per_m, tau, 0.3, 60'000);
+            const auto model = by_model(rings, up, true, loss_per_m, tau, 0.3);
+            std::printf("loss %.2f, tau %.1f:", loss_per_m, tau);
+            for (std::size_t r = 0; r < rings.size(); ++r) {
+                std::printf(" %.3f", model[r] / photons[r]);
+                EXPECT_NEAR(model[r] / photons[r], 1.0, 0.12) << rings[r].from_deg << " degrees";
+            }
+            std::printf("\n");
+        }
 }
