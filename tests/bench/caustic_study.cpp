@@ -73,21 +73,22 @@ public:
                   "light; };\n"
                   "layout(binding = TARN_BLOCK_WAVES, std140) uniform Waves { WaveBlock waves; };\n"
                   "layout(binding = 0, std430) writeonly buffer Out { float result[]; };\n"
-                  "layout(location = 0) uniform vec4 square;\n" // side, depth, texels
+                  "layout(location = 0) uniform vec4 square;\n" // side, depth, texels, corner
                   "void main() { ivec2 at = ivec2(gl_GlobalInvocationID.xy);\n"
-                  "vec2 place = (vec2(at) + 0.5) * square.x / square.z + square.y * "
-                  "light.beam.xy;\n"
+                  "vec2 place = square.w + (vec2(at) + 0.5) * square.x / square.z + "
+                  "square.y * light.beam.xy;\n"
                   "result[at.y * int(square.z) + at.x] = sun_focus(tiles, light, waves, place, "
                   "square.y, vec4(1.0), square.x / square.z); }\n",
               "<look>")) {}
 
     /// texels x texels, row = y. Tiles, waves and their block are bound.
-    std::vector<float> operator()(double side_m, double depth_m, int texels) const {
+    std::vector<float> operator()(double side_m, double depth_m, int texels,
+                                  double corner_m = 0.0) const {
         std::vector<float> out(std::size_t(texels) * std::size_t(texels));
         const gpu::Buffer buffer(out.size() * sizeof(float), nullptr);
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer.id());
         program_.use();
-        glUniform4f(0, float(side_m), float(depth_m), float(texels), 0.0f);
+        glUniform4f(0, float(side_m), float(depth_m), float(texels), float(corner_m));
         glDispatchCompute(gpu::groups(texels), gpu::groups(texels), 1);
         glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         glGetNamedBufferSubData(buffer.id(), 0, GLsizeiptr(out.size() * sizeof(float)), out.data());
@@ -191,6 +192,7 @@ void under_the_disc() {
     field.move_to(0.0);
     field.bind({0.0, 0.0}, 0.5);
     const LookUp look(field);
+    const double corner = -0.5 * own.texel_m(); // middles of texels, where nothing is interpolated
     render::SunlightVolume tiles;
     tiles.set(one, {.sun = sun});
     const std::vector<int> slices = {2, 5, 6, 8, 11};
@@ -206,7 +208,7 @@ void under_the_disc() {
                  .disc_rad = scene::sun_radius_rad,
                  .photons_a_side = 16,
                  .seed = other},
-                {.corner_m = {0, 0}, .side_m = own.patch_m, .texels = side},
+                {.corner_m = glm::dvec2(corner), .side_m = own.patch_m, .texels = side},
                 tiles.slice_depth_m(0, slice));
     }
     for (const scene::CausticsMethod& method : scene::caustics_methods())
@@ -222,7 +224,7 @@ void under_the_disc() {
                       << (method.caustics == scene::Caustics::splat ? text(dense) : "") << " | ";
             for (const int slice : slices)
                 std::cout << fixed(100.0 * compare(look(own.patch_m, tiles.slice_depth_m(0, slice),
-                                                        side),
+                                                        side, corner),
                                                    photons[slice])
                                                .l1,
                                    1)

@@ -383,6 +383,57 @@ TEST(Picture, TheSunsDiscFadesIntoItsGlow) {
     }
 }
 
+// Looking up at the rim of Snell's window from ever deeper, with no sun: the step there is what was
+// not scattered, and straight up the window is hardly darker than if nothing were.
+TEST(Picture, SnellsWindowFadesIntoItsGlow) {
+    test_support::context();
+    scene::Scene scene = scene::bowl(65);
+    scene.lakes[0].bed = Bed::unknown; // nothing but water
+    scene.optics = scene::water_type("mesotrophic lake");
+    render::Renderer renderer(scene);
+    const reference::Medium medium(scene.optics, true);
+    scene::View view;
+    view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.0, 0.5, 0.9)));
+    view.lighting.sun_irradiance = glm::dvec3(0.0);
+    view.settings = {.width_px = 9, .height_px = 49, .samples = 1, .least_transmittance = 1e-6};
+    const double rim_deg = std::asin(1.0 / scene.optics.index) * 180.0 / M_PI;
+    const auto luminance = [](glm::dvec3 c) { return glm::dot(c, {0.2126, 0.7152, 0.0722}); };
+    for (const double depth_m : {0.1, 0.5, 2.0, 4.0}) {
+        view.camera = scene::look({0, 0, 10.0 - depth_m}, 0, 90.0 - rim_deg, 8.0);
+        view.settings.forward_glow = true;
+        const Image got = renderer.draw(view), expected = reference::trace(scene, view, {});
+        view.settings.forward_glow = false;
+        const Image without = renderer.draw(view);
+        const auto step = [&](const Image& image) { // inside the rim, less outside
+            const auto row = [&](int y) {
+                return luminance(image.radiance[std::size_t(y * 9 + 4)]);
+            };
+            return row(20) - row(28);
+        };
+        for (const int y : {2, 12, 20, 28, 36, 46})
+            EXPECT_NEAR(luminance(got.radiance[std::size_t(y * 9 + 4)]) /
+                            luminance(expected.radiance[std::size_t(y * 9 + 4)]),
+                        1.0, 0.015)
+                << depth_m << " " << y;
+        const double way_m =
+            depth_m * scene.optics.index / std::sqrt(std::pow(scene.optics.index, 2) - 1.0);
+        const double unscattered = luminance(medium.image_transmittance(way_m)) /
+                                   luminance(medium.transmittance(way_m)),
+                     left = step(got) / step(without);
+        view.camera = scene::look({0, 0, 10.0 - depth_m}, 0, 89.0, 8.0);
+        const double up = luminance(renderer.draw(view).radiance[24 * 9 + 4]);
+        view.settings.forward_glow = true;
+        const double up_with = luminance(renderer.draw(view).radiance[24 * 9 + 4]);
+        std::printf(
+            "%.1f m deep: %.4f of the step, unscattered %.4f; straight up %.3f of the light\n",
+            depth_m, left, unscattered, up_with / up);
+        EXPECT_GT(left, unscattered * 0.97);
+        EXPECT_LT(left, unscattered * 1.03 + 0.08);
+        EXPECT_GT(up_with / up, 0.8);
+        EXPECT_LT(up_with / up, 1.5); // the zenith is darker than the sky's mean
+    }
+}
+
 // In blue water red is out of gamut, and negative: in the disc as in what the water lets through.
 TEST(Picture, TheDiscKeepsItsColourWhereAChannelIsOutOfGamut) {
     test_support::context();
