@@ -360,8 +360,9 @@ void add_view_options(CLI::App& c, ViewWords& w) {
         ->capture_default_str();
     c.add_flag("--no-thrown-back", w.no_thrown_back,
                "leave out what the surface throws back at the bed");
-    c.add_flag("--no-forward-glow", w.no_forward_glow,
-               "seen from below, keep all of the sun's light in its disc");
+    c.add_flag(
+        "--no-forward-glow", w.no_forward_glow,
+        "seen from below, no light glows around the sun, and Snell's window has a sharp rim");
     std::vector<std::string> methods;
     for (const scene::WalkMethod& method : scene::walk_methods())
         methods.emplace_back(method.name);

@@ -204,8 +204,8 @@ private:
     std::vector<glm::vec3> sky_made_;                  ///< as it is on the GPU
     bool hazy_ = false, whole_sky_ = false, mapped_ = false, curved_ = false, coarse_ = false,
          port_ = false, lamp_ = false, cut_water_ = false;
-    bool forwards_ = false; ///< the water scatters the sun's light forwards, as a camera in it sees
-    gpu::Texture2D glow_, sky_glow_;              ///< scene::make_glow_colours() ...
+    bool forwards_ = false;          ///< the water scatters light forwards, as a camera in it sees
+    gpu::Texture2D glow_, sky_glow_; ///< scene::make_glow_colours() ...
     std::optional<scene::WaterOptics> glow_made_; ///< ... of that water
     gpu::Texture2D port_heights_;
     std::map<std::string, gpu::ComputeProgram> port_passes_; ///< by the waves' defines

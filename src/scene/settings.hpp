@@ -85,8 +85,8 @@ struct RenderSettings {
     bool refraction = true;
     bool spectral = true;     ///< integrate over the water's bands; false: three narrow channels
     bool thrown_back = true;  ///< light that the surface sends back to the bed
-    bool forward_glow = true; ///< seen from below, the sun's light that water scatters forwards
-                              ///< glows around its disc; false: it counts as not scattered
+    bool forward_glow = true; ///< seen from below, light that water scatters forwards glows around
+                              ///< sun and window; false: it counts as not scattered
     Caustics caustics = Caustics::splat;
     int caustic_texels =
         0; ///< a side of a tile of them; 0: half the waves', else a power of two, [16, 2048]
