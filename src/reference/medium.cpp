@@ -33,6 +33,7 @@ Medium::Medium(const scene::WaterOptics& optics, bool spectral) : index_(optics.
     if (spectral && !optics.bands.empty()) {
         waves_ = sum_over(2.5);
         glow_waves_ = sum_over(5.0);
+        sky_glow_ = &scene::sky_glow_table(index_);
     } else {
         for (int c = 0; c < 3; ++c) {
             glm::dvec3 weight(0.0);
@@ -109,8 +110,9 @@ glm::dvec3 Medium::glow_radiance(double slant, double depth_m, double sink, doub
 
 glm::dvec3 Medium::sky_glow_radiance(double depth_m, double sink, double before_m,
                                      double distance_m, double angle_rad) const {
-    return glow_by(scene::sky_glow_table(index_), sky_glow_slant(angle_rad), depth_m, sink,
-                   before_m, distance_m, angle_rad);
+    return sky_glow_ ? glow_by(*sky_glow_, sky_glow_slant(angle_rad), depth_m, sink, before_m,
+                               distance_m, angle_rad)
+                     : glm::dvec3(0.0);
 }
 
 glm::dvec3 Medium::glow_by(const scene::GlowTable& glow, double slant, double depth_m, double sink,

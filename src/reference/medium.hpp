@@ -46,7 +46,8 @@ private:
         glm::dvec3 weight;
         double attenuation_per_m, backscattering_per_m, beam_per_m, pattern_per_m, forward_per_m;
     };
-    std::vector<Wave> waves_, glow_waves_; ///< fewer: a glow takes more sums
+    std::vector<Wave> waves_, glow_waves_;       ///< fewer: a glow takes more sums
+    const scene::GlowTable* sky_glow_ = nullptr; ///< none where no wavelengths are known
     double index_, sky_entering_;
 };
 

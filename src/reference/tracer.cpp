@@ -111,10 +111,9 @@ public:
                                     .schlick = settings_.fresnel == scene::Fresnel::schlick,
                                     .disc_rad = scene::sun_radius_rad},
                         deepest_m(scene));
-                if (tiles_)
-                    for (int i = 0; i <= beam_steps; ++i)
-                        beam_shares_.push_back(medium_.pattern_share(
-                            beam_reach_m * std::pow(double(i) / beam_steps, 2.0)));
+                for (int i = 0; tiles_ && i <= beam_steps; ++i)
+                    beam_shares_.push_back(medium_.pattern_share(
+                        beam_reach_m * std::pow(double(i) / beam_steps, 2.0)));
             }
         }
         const glm::dvec3& p = camera_.position;
