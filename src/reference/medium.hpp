@@ -22,9 +22,6 @@ public:
     glm::dvec3 transmittance(double path_m) const;
     glm::dvec3 path_radiance(double slant, double depth_m, double sink, double before_m,
                              double distance_m) const;
-    /// What all the water along a path, from path_m on without end, scatters back of light that
-    /// falls with the path: differences of it, over a way's rate, are path_radiance() of pieces.
-    glm::dvec3 scattered_beyond(double path_m) const;
     glm::dvec3 glow_radiance(double slant, double depth_m, double sink, double before_m,
                              double distance_m, double angle_rad) const;
     /// The same of skylight: the angle is off the vertical, and says how slant the light comes.
@@ -33,6 +30,9 @@ public:
     glm::dvec3 thrown_back(double depth_m) const;
     glm::dvec3 image_transmittance(double path_m) const;
     glm::dvec3 pattern_transmittance(double path_m) const;
+    /// What all the water along a path, from path_m on without end, scatters back of light that
+    /// falls with the path: differences of it, over a way's rate, are path_radiance() of pieces.
+    glm::dvec3 scattered_beyond(double path_m) const;
     /// Share of the light that is left which still draws patterns, by luminance; [0, 1].
     double pattern_share(double path_m) const;
     /// Share of an even sky that a flat surface lets in, by integrating over the angles in air.

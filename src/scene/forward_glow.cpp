@@ -95,7 +95,7 @@ const std::vector<double>& phase_moments() {
         const Rule rule = angles_of_half_sphere();
         std::vector<double> weight;
         for (std::size_t i = 0; i < rule.theta.size(); ++i)
-            weight.push_back(rule.solid_angle[i] * peaked_part(rule.theta[i]) / peaked_sum());
+            weight.push_back(rule.solid_angle[i] * forward_phase(rule.theta[i]));
         return moments_of(rule.theta, weight);
     }();
     return out;

@@ -108,6 +108,36 @@ void write_pfm(const std::filesystem::path& path, const std::vector<double>& val
     }
 }
 
+/// A way to fill a tile, and how many photons a side of a wave's texel it takes.
+struct Way {
+    scene::CausticsMethod method;
+    int photons;
+    std::string photons_said() const {
+        return method.caustics == scene::Caustics::splat ? text(photons) : "";
+    }
+};
+
+std::vector<Way> all_ways() {
+    std::vector<Way> out;
+    for (const scene::CausticsMethod& method : scene::caustics_methods())
+        for (const int photons : {1, 2, 4})
+            if (method.caustics != scene::Caustics::off &&
+                (photons == 1 || method.caustics == scene::Caustics::splat))
+                out.push_back({method, photons});
+    return out;
+}
+
+using Depths = std::map<int, std::vector<double>>; ///< sunlight by slice
+
+/// "1.5, 1.9, 2.2": how far photons are from others of them [%].
+std::string photons_against_photons(const Depths& photons, const Depths& others) {
+    std::string out;
+    for (const auto& [slice, light] : others)
+        out += (out.empty() ? "" : ", ") +
+               fixed(100.0 * compare({light.begin(), light.end()}, photons.at(slice)).l1, 1);
+    return out;
+}
+
 /// Each method's tiles of one cascade against photons by the hundred, and the time that a step of
 /// all takes.
 void methods(const std::filesystem::path& folder) {
@@ -131,7 +161,7 @@ void methods(const std::filesystem::path& folder) {
                   << (slice == slices.back() ? " m | flux |\n" : ", ");
     std::cout << "| --- | --- | --- | --- | --- | --- |\n";
     for (const int side : {128, 256}) {
-        std::map<int, std::vector<double>> photons, others;
+        Depths photons, others;
         for (const int slice : slices)
             for (const bool other : {false, true})
                 (other ? others : photons)[slice] = reference::sunlight_by_photons(
@@ -140,40 +170,30 @@ void methods(const std::filesystem::path& folder) {
                      .side_m = own.patch_m,
                      .texels = side},
                     tiles.slice_depth_m(cascade, slice));
-        for (const scene::CausticsMethod& method : scene::caustics_methods())
-            for (const int dense : {1, 2, 4}) {
-                if (method.caustics == scene::Caustics::off ||
-                    (dense > 1 && method.caustics != scene::Caustics::splat))
-                    continue;
-                tiles.set(
-                    sea, {.sun = sun, .method = method.caustics, .texels = side, .photons = dense});
-                const bench::Times t =
-                    bench::time_on_gpu([&] { tiles.update(field); }, gpu::is_software() ? 3 : 31);
-                std::cout << "| " << method.name << " | "
-                          << (method.caustics == scene::Caustics::splat ? text(dense) : "") << " | "
-                          << side << " | " << fixed(t.median_ms, 3) << " | ";
-                double worst = 0.0, low = 1e9, high = 0.0;
-                for (const int slice : slices) {
-                    const Likeness l = compare(tiles.read(cascade, slice), photons[slice]);
-                    std::cout << fixed(100.0 * l.l1, 1)
-                              << (slice == slices.back() ? " % | " : ", ");
-                    worst = std::max(worst, l.l1);
-                    low = std::min(low, l.mean);
-                    high = std::max(high, l.mean);
-                    if (slice == 8)
-                        data << method.name << (dense > 1 ? text("-", dense) : "") << " " << side
-                             << " " << t.median_ms << " " << 100.0 * l.l1 << "\n";
-                }
-                std::cout << fixed(low, 3) << " to " << fixed(high, 3) << " |" << std::endl;
+        for (const Way& way : all_ways()) {
+            tiles.set(sea, {.sun = sun,
+                            .method = way.method.caustics,
+                            .texels = side,
+                            .photons = way.photons});
+            const bench::Times t =
+                bench::time_on_gpu([&] { tiles.update(field); }, gpu::is_software() ? 3 : 31);
+            std::cout << "| " << way.method.name << " | " << way.photons_said() << " | " << side
+                      << " | " << fixed(t.median_ms, 3) << " | ";
+            double worst = 0.0, low = 1e9, high = 0.0;
+            for (const int slice : slices) {
+                const Likeness l = compare(tiles.read(cascade, slice), photons[slice]);
+                std::cout << fixed(100.0 * l.l1, 1) << (slice == slices.back() ? " % | " : ", ");
+                worst = std::max(worst, l.l1);
+                low = std::min(low, l.mean);
+                high = std::max(high, l.mean);
+                if (slice == 8)
+                    data << way.method.name << (way.photons > 1 ? text("-", way.photons) : "")
+                         << " " << side << " " << t.median_ms << " " << 100.0 * l.l1 << "\n";
             }
-        std::cout << "| photons against others of them | | " << side << " | | ";
-        for (const int slice : slices)
-            std::cout << fixed(100.0 * compare(std::vector<float>(others[slice].begin(),
-                                                                  others[slice].end()),
-                                               photons[slice])
-                                           .l1,
-                               1)
-                      << (slice == slices.back() ? " % | |\n" : ", ");
+            std::cout << fixed(low, 3) << " to " << fixed(high, 3) << " |" << std::endl;
+        }
+        std::cout << "| photons against others of them | | " << side << " | | "
+                  << photons_against_photons(photons, others) << " % | |\n";
     }
 }
 
@@ -196,7 +216,7 @@ void under_the_disc() {
     render::SunlightVolume tiles;
     tiles.set(one, {.sun = sun});
     const std::vector<int> slices = {2, 5, 6, 8, 11};
-    std::map<int, std::vector<double>> photons, others;
+    Depths photons, others;
     std::cout << "\n| with the sun's width | photons on a side | off at ";
     for (const int slice : slices) {
         std::cout << fixed(tiles.slice_depth_m(0, slice), 1)
@@ -211,34 +231,23 @@ void under_the_disc() {
                 {.corner_m = glm::dvec2(corner), .side_m = own.patch_m, .texels = side},
                 tiles.slice_depth_m(0, slice));
     }
-    for (const scene::CausticsMethod& method : scene::caustics_methods())
-        for (const int dense : {1, 2, 4}) {
-            if (method.caustics == scene::Caustics::off ||
-                (dense > 1 && method.caustics != scene::Caustics::splat))
-                continue;
-            tiles.set(one, {.sun = sun, .method = method.caustics, .photons = dense});
-            tiles.update(field);
-            tiles.bind();
-            field.bind({0.0, 0.0}, 0.5);
-            std::cout << "| " << method.name << " | "
-                      << (method.caustics == scene::Caustics::splat ? text(dense) : "") << " | ";
-            for (const int slice : slices)
-                std::cout << fixed(100.0 * compare(look(own.patch_m, tiles.slice_depth_m(0, slice),
-                                                        side, corner),
-                                                   photons[slice])
-                                               .l1,
-                                   1)
-                          << (slice == slices.back() ? " % |" : ", ");
-            std::cout << std::endl;
-        }
-    std::cout << "| photons against others of them | | ";
-    for (const int slice : slices)
-        std::cout << fixed(100.0 * compare(std::vector<float>(others[slice].begin(),
-                                                              others[slice].end()),
-                                           photons[slice])
-                                       .l1,
-                           1)
-                  << (slice == slices.back() ? " % |\n" : ", ");
+    for (const Way& way : all_ways()) {
+        tiles.set(one, {.sun = sun, .method = way.method.caustics, .photons = way.photons});
+        tiles.update(field);
+        tiles.bind();
+        field.bind({0.0, 0.0}, 0.5);
+        std::cout << "| " << way.method.name << " | " << way.photons_said() << " | ";
+        for (const int slice : slices)
+            std::cout << fixed(100.0 * compare(look(own.patch_m, tiles.slice_depth_m(0, slice),
+                                                    side, corner),
+                                               photons[slice])
+                                           .l1,
+                               1)
+                      << (slice == slices.back() ? " % |" : ", ");
+        std::cout << std::endl;
+    }
+    std::cout << "| photons against others of them | | " << photons_against_photons(photons, others)
+              << " % |\n";
 }
 
 /// How often sunlight is how strong below all the waves: after Dera, as in Tessendorf's figure 29.
@@ -290,9 +299,7 @@ void whole_sea(const std::filesystem::path& folder) {
         field.move_to(0.0);
         field.bind({0.0, 0.0}, 0.5);
         render::SunlightVolume tiles;
-        tiles.set(sea, {.sun = sun,
-                        .texels = std::getenv("T") ? std::atoi(std::getenv("T")) : 0,
-                        .slices = std::getenv("K") ? std::atoi(std::getenv("K")) : 20});
+        tiles.set(sea, {.sun = sun, .slices = 20});
         tiles.update(field);
         tiles.bind();
         const LookUp look(field);
@@ -337,9 +344,9 @@ int main(int argc, char** argv) try {
         return 0;
     }
     methods(argv[1]);
-    under_the_disc();
     if (only == "methods")
         return 0;
+    under_the_disc();
     distributions(argv[1]);
     whole_sea(argv[1]);
     return 0;

@@ -74,6 +74,16 @@ void expect_same_presets(const scene::Scene& scene, const std::string& name,
     }
 }
 
+/// A lake whose bed is unknown: nothing but water.
+scene::Scene nothing_but_water(const std::string& type) {
+    scene::Scene scene = scene::bowl(65);
+    scene.lakes[0].bed = Bed::unknown;
+    scene.optics = scene::water_type(type);
+    return scene;
+}
+
+double luminance(glm::dvec3 c) { return glm::dot(c, {0.2126, 0.7152, 0.0722}); }
+
 } // namespace
 
 TEST(Picture, MountainLakeAboveAndBelow) {
@@ -129,9 +139,6 @@ TEST(Picture, ASecchiDiscDisappearsWhereItWasAsked) {
         const glm::dvec3 sunlight =
             view.lighting.sun_irradiance * under.z *
             reference::sun_share_below(sun, under, scene.optics.index, false);
-        const auto luminance = [](glm::vec3 c) {
-            return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
-        };
         const double water = luminance(renderer.draw(view).radiance[27]);
         const auto contrast = [&](double z) {
             const glm::dvec3 radiance = 0.85 / M_PI *
@@ -314,9 +321,7 @@ TEST(Picture, ABlackThingInTheWaterIsSeenAsFarAsItsAttenuationSays) {
     test_support::context();
     for (const char* name : {"pure", "clear lake", "mesotrophic lake", "eutrophic lake",
                              "humic lake", "glacial lake"}) {
-        scene::Scene scene = scene::bowl(65);
-        scene.lakes[0].bed = Bed::unknown; // nothing but water
-        scene.optics = scene::water_type(name);
+        const scene::Scene scene = nothing_but_water(name);
         render::Renderer renderer(scene);
         scene::View view;
         view.lighting = scene::clear_sky(glm::normalize(glm::dvec3(0.3, 0.2, 0.8)));
@@ -326,9 +331,6 @@ TEST(Picture, ABlackThingInTheWaterIsSeenAsFarAsItsAttenuationSays) {
         for (const scene::WaterBand& band : scene.optics.bands)
             if (band.wavelength_nm >= 450 && band.wavelength_nm <= 650)
                 least_c = std::min(least_c, band.absorption_per_m + band.scattering_per_m);
-        const auto luminance = [](glm::vec3 c) {
-            return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
-        };
         const double water = luminance(renderer.draw(view).radiance[27]);
         double low = 0.0, high = 20.0 / least_c;
         for (int i = 0; i < 24; ++i) {
@@ -357,7 +359,6 @@ TEST(Picture, TheSunsDiscFadesIntoItsGlow) {
     view.settings = {.width_px = 33, .height_px = 33, .samples = 1, .least_transmittance = 1e-6};
     const glm::dvec3 under = reference::sun_below(view.lighting.sun_direction, scene.optics.index);
     const double pitch_deg = std::asin(under.z) * 180.0 / M_PI;
-    const auto luminance = [](glm::dvec3 c) { return glm::dot(c, {0.2126, 0.7152, 0.0722}); };
     for (const double depth_m : {0.1, 0.5, 2.0, 4.0}) {
         view.camera = scene::look({0, 0, 10.0 - depth_m}, 0, pitch_deg, 3.0);
         view.settings.forward_glow = true;
@@ -387,9 +388,7 @@ TEST(Picture, TheSunsDiscFadesIntoItsGlow) {
 // not scattered, and straight up the window is hardly darker than if nothing were.
 TEST(Picture, SnellsWindowFadesIntoItsGlow) {
     test_support::context();
-    scene::Scene scene = scene::bowl(65);
-    scene.lakes[0].bed = Bed::unknown; // nothing but water
-    scene.optics = scene::water_type("mesotrophic lake");
+    const scene::Scene scene = nothing_but_water("mesotrophic lake");
     render::Renderer renderer(scene);
     const reference::Medium medium(scene.optics, true);
     scene::View view;
@@ -397,7 +396,6 @@ TEST(Picture, SnellsWindowFadesIntoItsGlow) {
     view.lighting.sun_irradiance = glm::dvec3(0.0);
     view.settings = {.width_px = 9, .height_px = 49, .samples = 1, .least_transmittance = 1e-6};
     const double rim_deg = std::asin(1.0 / scene.optics.index) * 180.0 / M_PI;
-    const auto luminance = [](glm::dvec3 c) { return glm::dot(c, {0.2126, 0.7152, 0.0722}); };
     for (const double depth_m : {0.1, 0.5, 2.0, 4.0}) {
         view.camera = scene::look({0, 0, 10.0 - depth_m}, 0, 90.0 - rim_deg, 8.0);
         view.settings.forward_glow = true;
@@ -437,9 +435,7 @@ TEST(Picture, SnellsWindowFadesIntoItsGlow) {
 // In blue water red is out of gamut, and negative: in the disc as in what the water lets through.
 TEST(Picture, TheDiscKeepsItsColourWhereAChannelIsOutOfGamut) {
     test_support::context();
-    scene::Scene scene = scene::bowl(65);
-    scene.lakes[0].bed = Bed::unknown; // nothing but water
-    scene.optics = scene::water_type("jerlov I");
+    const scene::Scene scene = nothing_but_water("jerlov I");
     render::Renderer renderer(scene);
     const reference::Medium medium(scene.optics, true);
     scene::View view;
